@@ -1,0 +1,2 @@
+//! From a hinted font to a neural one.
+pub mod teacher;

@@ -1,0 +1,14 @@
+//! Neural font rendering: hinted bitmaps from small implicit models, with no bytecode interpreter.
+
+pub mod error;
+pub mod model;
+pub mod render;
+pub mod table;
+
+#[cfg(feature = "convert")]
+pub mod compare;
+#[cfg(feature = "convert")]
+pub mod convert;
+
+pub use error::Error;
+pub use render::{Bitmap, Placement};
