@@ -11,4 +11,5 @@ pub mod compare;
 pub mod convert;
 
 pub use error::Error;
-pub use render::{Bitmap, Placement};
+pub use model::Target;
+pub use render::{Bitmap, Font, Glyph, Placement, Scratch};

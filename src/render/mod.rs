@@ -1,5 +1,9 @@
 //! From a model to pixels.
 
+mod font;
+
+pub use font::{Font, Glyph, Scratch};
+
 /// Where a bitmap lies relative to the pen, in pixels (FreeType's `bitmap_left` and `bitmap_top`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Placement {

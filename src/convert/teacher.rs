@@ -1,0 +1,205 @@
+//! The teacher: skrifa's hinted and unhinted outlines, filled with exact area coverage by zeno.
+//!
+//! skrifa falls back silently in several places. Here the interpreter is asked for explicitly, and whatever
+//! would make it do something else than run the font's own programs at the size asked for is an error.
+
+use read_fonts::{FontRef, TableProvider};
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::{
+    DrawSettings, Engine, HintingInstance, HintingOptions, OutlineGlyphCollection, OutlineGlyphFormat,
+    OutlinePen, SmoothMode, Target as SkrifaTarget,
+};
+use skrifa::{GlyphId, MetadataProvider};
+use zeno::{Command, Mask, Origin, PathBuilder};
+
+use crate::error::Error;
+use crate::model::Target;
+use crate::render::{Bitmap, Placement};
+
+/// The largest size that the teacher draws, in pixels per em.
+pub const MAX_PPEM: f32 = 1024.0;
+
+/// One glyph's outline at one size, in pixels, y up.
+#[derive(Debug, Clone, Default)]
+pub struct Outline {
+    commands: Vec<Command>,
+    /// Every coordinate that the outline's commands carry, in order. Hinting moves points and never
+    /// reorders them, so hinted and unhinted outlines correspond index by index.
+    pub points: Vec<[f32; 2]>,
+}
+
+impl Outline {
+    /// Exact area coverage of every pixel that the outline touches (nonzero winding).
+    pub fn rasterize(&self) -> Bitmap {
+        if self.commands.is_empty() {
+            return Bitmap::default();
+        }
+        let (pixels, place) = Mask::new(self.commands.as_slice()).origin(Origin::BottomLeft).render();
+        let placement =
+            Placement { left: place.left, top: place.top, width: place.width, height: place.height };
+        Bitmap { placement, pixels }
+    }
+}
+
+impl OutlinePen for Outline {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.points.push([x, y]);
+        self.commands.move_to([x, y]);
+    }
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.points.push([x, y]);
+        self.commands.line_to([x, y]);
+    }
+    fn quad_to(&mut self, cx: f32, cy: f32, x: f32, y: f32) {
+        self.points.extend([[cx, cy], [x, y]]);
+        self.commands.quad_to([cx, cy], [x, y]);
+    }
+    fn curve_to(&mut self, ax: f32, ay: f32, bx: f32, by: f32, x: f32, y: f32) {
+        self.points.extend([[ax, ay], [bx, by], [x, y]]);
+        self.commands.curve_to([ax, ay], [bx, by], [x, y]);
+    }
+    fn close(&mut self) {
+        self.commands.close();
+    }
+}
+
+/// A hinted font as the source of truth.
+pub struct Teacher<'a> {
+    outlines: OutlineGlyphCollection<'a>,
+    target: Target,
+    units_per_em: u16,
+}
+
+impl<'a> Teacher<'a> {
+    /// Takes the font as a teacher.
+    ///
+    /// # Errors
+    ///
+    /// `Unsupported` for a variable font, a font without TrueType outlines, or one without hint programs.
+    pub fn new(font: &FontRef<'a>, target: Target) -> Result<Self, Error> {
+        let outlines = font.outline_glyphs();
+        match outlines.format() {
+            Some(OutlineGlyphFormat::Glyf) => {}
+            Some(_) => {
+                return Err(Error::Unsupported(
+                    "the outlines are PostScript (CFF), not TrueType; convert them to a hinted TrueType font first"
+                        .into(),
+                ));
+            }
+            None => {
+                return Err(Error::Unsupported(
+                    "the font has no 'glyf' outlines; pass a TrueType font".into(),
+                ));
+            }
+        }
+        if font.fvar().is_ok() {
+            return Err(Error::Unsupported(
+                "the font is variable; make a static instance first (fonttools varLib.instancer)".into(),
+            ));
+        }
+        if font.fpgm().is_err() && font.prep().is_err() {
+            return Err(Error::Unsupported(
+                "the font has no hint programs ('fpgm', 'prep'), so there is nothing to learn; pass a hinted font"
+                    .into(),
+            ));
+        }
+        let units_per_em = font
+            .head()
+            .map_err(|e| Error::Malformed(format!("table 'head' cannot be read ({e})")))?
+            .units_per_em();
+        Ok(Self { outlines, target, units_per_em })
+    }
+
+    /// Font units in an em.
+    pub fn units_per_em(&self) -> u16 {
+        self.units_per_em
+    }
+
+    /// What this teacher hints for.
+    pub fn target(&self) -> Target {
+        self.target
+    }
+
+    /// Sets the interpreter up for one size: runs `fpgm` and `prep`.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if a program fails; `Unsupported` if the font switches hinting off at this size.
+    pub fn at(&self, ppem: u16) -> Result<TeacherAt<'_, 'a>, Error> {
+        check_ppem(f32::from(ppem))?;
+        let options = HintingOptions { engine: Engine::Interpreter, target: skrifa_target(self.target) };
+        let size = Size::new(f32::from(ppem));
+        let hinting =
+            HintingInstance::new(&self.outlines, size, LocationRef::default(), options).map_err(|e| {
+                Error::Malformed(format!("the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"))
+            })?;
+        if !hinting.is_enabled() {
+            return Err(Error::Unsupported(format!(
+                "the font's own 'prep' program switches hinting off at {ppem} ppem; leave that size out of --ppem"
+            )));
+        }
+        Ok(TeacherAt { teacher: self, hinting, ppem })
+    }
+
+    /// The plain scaled outline, at any size.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` for a glyph that the font does not have, `Malformed` for one that cannot be drawn.
+    pub fn unhinted(&self, gid: u16, ppem: f32) -> Result<Outline, Error> {
+        check_ppem(ppem)?;
+        self.draw(gid, DrawSettings::unhinted(Size::new(ppem), LocationRef::default()), ppem)
+            .map(|(outline, _)| outline)
+    }
+
+    fn draw(&self, gid: u16, settings: DrawSettings<'_>, ppem: f32) -> Result<(Outline, Option<f32>), Error> {
+        let glyph = self.outlines.get(GlyphId::from(gid)).ok_or(Error::MissingGlyph(gid))?;
+        let mut outline = Outline::default();
+        let metrics = glyph
+            .draw(settings, &mut outline)
+            .map_err(|e| Error::Malformed(format!("glyph {gid} cannot be drawn at {ppem} ppem ({e})")))?;
+        Ok((outline, metrics.advance_width))
+    }
+}
+
+/// The teacher at one size.
+pub struct TeacherAt<'t, 'a> {
+    teacher: &'t Teacher<'a>,
+    hinting: HintingInstance,
+    ppem: u16,
+}
+
+impl TeacherAt<'_, '_> {
+    /// The size in pixels per em.
+    pub fn ppem(&self) -> u16 {
+        self.ppem
+    }
+
+    /// The hinted outline.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` for a glyph that the font does not have, `Malformed` if its program fails.
+    pub fn hinted(&self, gid: u16) -> Result<Outline, Error> {
+        let settings = DrawSettings::hinted(&self.hinting, false);
+        self.teacher.draw(gid, settings, f32::from(self.ppem)).map(|(outline, _)| outline)
+    }
+}
+
+fn check_ppem(ppem: f32) -> Result<(), Error> {
+    if ppem > 0.0 && ppem <= MAX_PPEM {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_PPEM}")))
+}
+
+/// The settings under which skrifa equals FreeType's default render.
+fn skrifa_target(target: Target) -> SkrifaTarget {
+    let smooth =
+        |mode| SkrifaTarget::Smooth { mode, symmetric_rendering: true, preserve_linear_metrics: false };
+    match target {
+        Target::Smooth => smooth(SmoothMode::Normal),
+        Target::Mono => SkrifaTarget::Mono,
+        Target::Lcd => smooth(SmoothMode::Lcd),
+    }
+}
