@@ -1,6 +1,11 @@
 //! From a hinted font to a neural one.
 
+pub mod distance;
+pub mod start;
+pub mod teach;
 pub mod teacher;
+pub mod train;
+pub mod warp;
 
 use std::ops::RangeInclusive;
 

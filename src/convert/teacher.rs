@@ -10,7 +10,7 @@ use skrifa::outline::{
     OutlinePen, SmoothMode, Target as SkrifaTarget,
 };
 use skrifa::{GlyphId, MetadataProvider};
-use zeno::{Command, Mask, Origin, PathBuilder};
+use zeno::{Command, Mask, Origin, PathBuilder, Vector};
 
 use crate::error::Error;
 use crate::model::Target;
@@ -18,6 +18,9 @@ use crate::render::{Bitmap, Placement};
 
 /// The largest size that the teacher draws, in pixels per em.
 pub const MAX_PPEM: f32 = 1024.0;
+
+/// Straight pieces that stand for one quadratic curve: off by less than 1/2000 em on any glyph-sized arc.
+const CURVE_PIECES: usize = 8;
 
 /// One glyph's outline at one size, in pixels, y up.
 #[derive(Debug, Clone, Default)]
@@ -29,12 +32,69 @@ pub struct Outline {
 }
 
 impl Outline {
+    fn scale(&mut self, factor: f32) {
+        for point in &mut self.points {
+            *point = point.map(|v| v * factor);
+        }
+        let scaled = |p: &Vector| Vector::new(p.x * factor, p.y * factor);
+        for command in &mut self.commands {
+            *command = match command {
+                Command::MoveTo(p) => Command::MoveTo(scaled(p)),
+                Command::LineTo(p) => Command::LineTo(scaled(p)),
+                Command::QuadTo(c, p) => Command::QuadTo(scaled(c), scaled(p)),
+                Command::CurveTo(a, b, p) => Command::CurveTo(scaled(a), scaled(b), scaled(p)),
+                Command::Close => Command::Close,
+            };
+        }
+    }
+
+    /// The outline as straight pieces `[from, to]`, curves cut into `CURVE_PIECES`.
+    pub fn segments(&self) -> Vec<[[f32; 2]; 2]> {
+        let mut segments = Vec::new();
+        let (mut start, mut at) = ([0.0f32; 2], [0.0f32; 2]);
+        let xy = |p: &Vector| [p.x, p.y];
+        for command in &self.commands {
+            match command {
+                Command::MoveTo(p) => (start, at) = (xy(p), xy(p)),
+                Command::LineTo(p) => {
+                    segments.push([at, xy(p)]);
+                    at = xy(p);
+                }
+                Command::QuadTo(c, p) => {
+                    let (from, c, p) = (at, xy(c), xy(p));
+                    for piece in 1..=CURVE_PIECES {
+                        let t = piece as f32 / CURVE_PIECES as f32;
+                        let point = [0, 1].map(|k| {
+                            (1.0 - t) * (1.0 - t) * from[k] + 2.0 * t * (1.0 - t) * c[k] + t * t * p[k]
+                        });
+                        segments.push([at, point]);
+                        at = point;
+                    }
+                }
+                // glyf outlines have no cubic curves; their end keeps the contour closed.
+                Command::CurveTo(_, _, p) => {
+                    segments.push([at, xy(p)]);
+                    at = xy(p);
+                }
+                Command::Close => {
+                    segments.push([at, start]);
+                    at = start;
+                }
+            }
+        }
+        segments.retain(|[a, b]| a != b);
+        segments
+    }
+
     /// Exact area coverage of every pixel that the outline touches (nonzero winding).
     pub fn rasterize(&self) -> Bitmap {
         if self.commands.is_empty() {
             return Bitmap::default();
         }
-        let (pixels, place) = Mask::new(self.commands.as_slice()).origin(Origin::BottomLeft).render();
+        let mut mask = Mask::new(self.commands.as_slice());
+        // Without this call zeno 0.3 does not know the height yet when it works out `top`.
+        mask.origin(Origin::BottomLeft).inspect(|_, _, _| {});
+        let (pixels, place) = mask.render();
         let placement =
             Placement { left: place.left, top: place.top, width: place.width, height: place.height };
         Bitmap { placement, pixels }
@@ -150,6 +210,19 @@ impl<'a> Teacher<'a> {
         check_ppem(ppem)?;
         self.draw(gid, DrawSettings::unhinted(Size::new(ppem), LocationRef::default()), ppem)
             .map(|(outline, _)| outline)
+    }
+
+    /// The plain outline in em.
+    ///
+    /// # Errors
+    ///
+    /// As `unhinted`.
+    pub fn unhinted_em(&self, gid: u16) -> Result<Outline, Error> {
+        // Unscaled font units are exact; a scaled outline is rounded to 26.6 pixels.
+        let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+        let (mut outline, _) = self.draw(gid, settings, f32::from(self.units_per_em))?;
+        outline.scale(1.0 / f32::from(self.units_per_em));
+        Ok(outline)
     }
 
     fn draw(&self, gid: u16, settings: DrawSettings<'_>, ppem: f32) -> Result<(Outline, Option<f32>), Error> {

@@ -1,5 +1,7 @@
 //! The models as integers: what each stores, and how it evaluates.
 
+pub mod gridfit;
+
 use std::fmt;
 use std::str::FromStr;
 

@@ -1,0 +1,149 @@
+//! A glyph's first guess: the warp from its points, the field from its outline.
+
+use crate::convert::distance::signed_distance;
+use crate::convert::teach::Lesson;
+use crate::convert::warp::{self, Warp};
+use crate::model::Target;
+use crate::model::gridfit::{
+    AxisWarp, DEFORM_NODES, FIELD_LIMIT, GridAxis, PADDING, Scale, WARP_STEPS, Weights,
+};
+
+/// How large a glyph's model may become.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capacity {
+    /// Edge of a field cell in em; small glyphs and large ones keep within `MIN_CELLS..=MAX_CELLS`.
+    pub cell: f32,
+    /// Knots of each warped axis, at most.
+    pub knots: usize,
+    /// Deformation patterns.
+    pub rank: usize,
+}
+
+impl Default for Capacity {
+    fn default() -> Self {
+        Self { cell: 0.034, knots: 12, rank: 4 }
+    }
+}
+
+/// The fewest cells along an axis.
+const MIN_CELLS: f32 = 6.0;
+/// The most cells along an axis.
+const MAX_CELLS: f32 = 40.0;
+
+/// A model's weights in their natural units while it is trained.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Draft {
+    /// The plain outline's box in font units.
+    pub bounds: [i16; 4],
+    /// Cells of the field along x and y.
+    pub cells: [usize; 2],
+    /// Spline coefficients in em, bottom row first. Empty: nothing to draw.
+    pub field: Vec<f32>,
+    /// Knots in font units, for x and y.
+    pub knots: [Vec<i16>; 2],
+    /// Hinted knot positions in pixels for each axis, by size and knot.
+    pub hinted: [Vec<f32>; 2],
+    /// The number of deformation patterns.
+    pub rank: usize,
+    /// Patterns, bottom row first.
+    pub patterns: Vec<f32>,
+    /// The weight of each pattern in pixels, by size and pattern.
+    pub embedding: Vec<f32>,
+}
+
+impl Draft {
+    /// The first guess for a lesson. `seed` and the glyph's number determine the patterns' noise.
+    pub fn from_lesson(lesson: &Lesson, scale: Scale, target: Target, capacity: Capacity, seed: u64) -> Self {
+        let points = &lesson.outline.points;
+        if points.is_empty() {
+            return Self::default();
+        }
+        let units = f32::from(scale.units_per_em);
+        let extreme = |axis: usize| {
+            let values = points.iter().map(move |p| p[axis] * units);
+            values.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+        };
+        let [(x0, x1), (y0, y1)] = [extreme(0), extreme(1)];
+        let bounds = [x0.floor() as i16, y0.floor() as i16, x1.ceil() as i16, y1.ceil() as i16];
+        let axis = |k: usize| {
+            let (low, high) = (f32::from(bounds[k]) / units, f32::from(bounds[k + 2]) / units);
+            let cells = ((high - low + 2.0 * PADDING) / capacity.cell).round().clamp(MIN_CELLS, MAX_CELLS);
+            GridAxis::new(low, high, cells as usize)
+        };
+        let grid = [axis(0), axis(1)];
+        let mut draft = Self {
+            bounds,
+            cells: grid.map(|g| g.cells),
+            field: first_field(lesson, grid),
+            rank: capacity.rank,
+            patterns: noise(capacity.rank * DEFORM_NODES * DEFORM_NODES, seed ^ u64::from(lesson.gid)),
+            embedding: vec![0.0; capacity.rank * lesson.sizes.len()],
+            ..Self::default()
+        };
+        for axis in if target == Target::Smooth { 1..2 } else { 0..2 } {
+            let fitted = first_warp(lesson, axis, capacity.knots);
+            draft.knots[axis] = fitted.knots.iter().map(|k| (k * units).round() as i16).collect();
+            draft.hinted[axis] = fitted.hinted.concat();
+        }
+        draft
+    }
+
+    /// Rounds to what is stored.
+    pub fn quantise(&self) -> Weights {
+        use crate::model::gridfit::{EMBEDDING_STEPS, FIELD_STEPS, PATTERN_STEPS};
+        let bytes = |values: &[f32], steps: f32| {
+            values.iter().map(|v| (v * steps).round().clamp(-127.0, 127.0) as i8).collect::<Vec<_>>()
+        };
+        let warp = |k: usize| AxisWarp {
+            knots: self.knots[k].clone(),
+            hinted: self.hinted[k].iter().map(|h| (h * WARP_STEPS).round() as i32).collect(),
+        };
+        Weights {
+            bounds: self.bounds,
+            cells: self.cells.map(|c| c as u8),
+            field: bytes(&self.field, FIELD_STEPS),
+            warp_x: warp(0),
+            warp_y: warp(1),
+            rank: self.rank as u8,
+            patterns: bytes(&self.patterns, PATTERN_STEPS),
+            embedding: bytes(&self.embedding, EMBEDDING_STEPS),
+        }
+    }
+}
+
+fn first_warp(lesson: &Lesson, axis: usize, knots: usize) -> Warp {
+    let plain: Vec<f32> = lesson.outline.points.iter().map(|p| p[axis]).collect();
+    let hinted: Vec<Vec<f32>> =
+        lesson.sizes.iter().map(|s| s.points.iter().map(|p| p[axis]).collect()).collect();
+    let ppem: Vec<u16> = lesson.sizes.iter().map(|s| s.ppem).collect();
+    warp::fit(&plain, &hinted, &ppem, knots)
+}
+
+/// Spline coefficients from the signed distance at their centres.
+fn first_field(lesson: &Lesson, [gx, gy]: [GridAxis; 2]) -> Vec<f32> {
+    let segments = lesson.outline.segments();
+    let centre = |axis: GridAxis, k: usize| axis.origin + (k as f32 - 0.5) / axis.cells_per_em;
+    let mut field = Vec::with_capacity((gx.cells + 2) * (gy.cells + 2));
+    for row in 0..gy.cells + 2 {
+        for column in 0..gx.cells + 2 {
+            let distance = signed_distance(&segments, [centre(gx, column), centre(gy, row)]);
+            field.push(distance.clamp(-FIELD_LIMIT, FIELD_LIMIT));
+        }
+    }
+    field
+}
+
+/// Reproducible noise in ±½ (SplitMix64).
+fn noise(count: usize, seed: u64) -> Vec<f32> {
+    let mut state = seed;
+    (0..count)
+        .map(|_| {
+            state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+            let mut z = state;
+            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+            z ^= z >> 31;
+            (z >> 40) as f32 / (1u64 << 24) as f32 - 0.5
+        })
+        .collect()
+}

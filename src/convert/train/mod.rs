@@ -1,0 +1,117 @@
+//! Training: gradient descent on the bitmaps, with rounding in the loop for the last part.
+
+mod batch;
+mod field;
+
+use burn::optim::{Adam, AdamConfig, AdamState, Optimizer};
+use burn::tensor::{Device, Tensor};
+
+use crate::convert::start::Draft;
+use crate::convert::teach::Lesson;
+use crate::error::Error;
+use crate::model::gridfit::Scale;
+use batch::{Extent, GROUPS, Group};
+use field::{ColumnBasis, Parameters, column_basis, loss};
+
+/// How long and how fast to train.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Schedule {
+    /// Optimiser steps; each sees one eighth of the sizes.
+    pub steps: usize,
+    /// The share of the steps after which weights are rounded in the loop.
+    pub rounded_from: f32,
+    /// First learning rates; all decay along a cosine to `FINAL_RATE` of themselves. Field in em.
+    pub field_rate: f64,
+    /// Hinted knot positions, in pixels.
+    pub warp_rate: f64,
+    /// Deformation patterns.
+    pub pattern_rate: f64,
+    /// Size embedding, in pixels.
+    pub embedding_rate: f64,
+}
+
+impl Default for Schedule {
+    fn default() -> Self {
+        Self {
+            steps: 800,
+            rounded_from: 0.5,
+            field_rate: 1.5e-3,
+            warp_rate: 0.015,
+            pattern_rate: 0.01,
+            embedding_rate: 0.01,
+        }
+    }
+}
+
+/// What is left of the learning rates at the end.
+const FINAL_RATE: f64 = 0.02;
+/// Adam's epsilon. burn's default of 1e-5 is as large as our gradients.
+const EPSILON: f32 = 1e-10;
+
+struct Moments<const D: usize>(Option<AdamState<D>>);
+
+impl<const D: usize> Moments<D> {
+    fn step(&mut self, adam: &Adam, rate: f64, weights: Tensor<D>, gradient: Option<Tensor<D>>) -> Tensor<D> {
+        let Some(gradient) = gradient else { return weights };
+        let (stepped, state) = adam.step(rate, weights.inner(), gradient, self.0.take());
+        self.0 = state;
+        Tensor::from_inner(stepped).require_grad()
+    }
+}
+
+/// Trains a chunk of glyphs together. Glyphs do not influence each other.
+///
+/// # Errors
+///
+/// `Malformed` if a first guess contradicts itself.
+pub fn train(
+    lessons: &[Lesson],
+    drafts: &mut [Draft],
+    scale: Scale,
+    schedule: Schedule,
+    device: &Device,
+) -> Result<(), Error> {
+    let extent = Extent::of(drafts, scale.sizes());
+    let device = device.clone().autodiff();
+    let groups = (0..GROUPS)
+        .map(|k| Group::new(lessons, drafts, scale, extent, k, &device))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut weights = Parameters::from_drafts(drafts, extent, &device);
+    weights.field = weights.field.require_grad();
+    weights.hinted = weights.hinted.map(Tensor::require_grad);
+    weights.patterns = weights.patterns.require_grad();
+    weights.embedding = weights.embedding.require_grad();
+    // Columns that are not warped stay where they are.
+    let still: Option<Vec<ColumnBasis>> = (extent.knots[0] == 0)
+        .then(|| groups.iter().map(|g| column_basis(&g.columns, &weights.hinted[0], extent)).collect());
+    let adam = AdamConfig::new().with_beta_2(0.99).with_epsilon(EPSILON).build();
+    let (mut field, mut hinted_x, mut hinted_y) = (Moments(None), Moments(None), Moments(None));
+    let (mut patterns, mut embedding) = (Moments(None), Moments(None));
+    for step in 0..schedule.steps {
+        let done = step as f64 / schedule.steps as f64;
+        let decay = FINAL_RATE + (1.0 - FINAL_RATE) * 0.5 * (1.0 + (std::f64::consts::PI * done).cos());
+        // 3 is coprime to 8: neighbouring sizes are not seen one after the other.
+        let k = step * 3 % GROUPS;
+        if groups[k].samples.runs.is_empty() {
+            continue;
+        }
+        let used = if done as f32 >= schedule.rounded_from { weights.rounded() } else { weights.clone() };
+        let loss = loss(&groups[k], still.as_ref().map(|s| &s[k]), &used, extent);
+        let mut gradients = loss.backward();
+        let [x, y] = weights.hinted.clone();
+        let (gx, gy) = (x.grad_remove(&mut gradients), y.grad_remove(&mut gradients));
+        let gradient = weights.field.grad_remove(&mut gradients);
+        weights.field = field.step(&adam, schedule.field_rate * decay, weights.field, gradient);
+        weights.hinted = [
+            hinted_x.step(&adam, schedule.warp_rate * decay, x, gx),
+            hinted_y.step(&adam, schedule.warp_rate * decay, y, gy),
+        ];
+        let gradient = weights.patterns.grad_remove(&mut gradients);
+        weights.patterns = patterns.step(&adam, schedule.pattern_rate * decay, weights.patterns, gradient);
+        let gradient = weights.embedding.grad_remove(&mut gradients);
+        weights.embedding =
+            embedding.step(&adam, schedule.embedding_rate * decay, weights.embedding, gradient);
+    }
+    weights.store(drafts, extent);
+    Ok(())
+}

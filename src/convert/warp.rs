@@ -1,0 +1,126 @@
+//! The first guess of the warp: knots among the outline's own levels, and their hinted positions, by least
+//! squares on what hinting did to the outline's points.
+
+/// Knots of one axis and where hinting puts them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Warp {
+    /// Ascending positions in em.
+    pub knots: Vec<f32>,
+    /// For each size, the hinted position of each knot in pixels.
+    pub hinted: Vec<Vec<f32>>,
+}
+
+/// Levels closer than this to a knot (em) are no candidates: they would make the fit ill-conditioned.
+const MIN_SPACING: f32 = 0.006;
+/// No more knots are added once the mean squared residual falls below this (pixels²).
+const GOOD_ENOUGH: f64 = 2e-5;
+/// Pulls each knot's displacement towards its neighbours' where the points do not determine it.
+const RIDGE: f64 = 1e-4;
+
+/// Fits a warp of at most `max_knots` knots. `plain` holds a coordinate of each outline point in em,
+/// `hinted` the same coordinate in pixels for each size, `ppem` the sizes.
+pub fn fit(plain: &[f32], hinted: &[Vec<f32>], ppem: &[u16], max_knots: usize) -> Warp {
+    let mut levels = plain.to_vec();
+    levels.sort_by(f32::total_cmp);
+    levels.dedup();
+    let moves: Vec<Vec<f64>> = hinted
+        .iter()
+        .zip(ppem)
+        .map(|(row, &s)| row.iter().zip(plain).map(|(h, p)| f64::from(*h - *p * f32::from(s))).collect())
+        .collect();
+    let (Some(&low), Some(&high)) = (levels.first(), levels.last()) else {
+        return Warp { knots: Vec::new(), hinted: vec![Vec::new(); ppem.len()] };
+    };
+    let mut knots = vec![low];
+    if high - low > MIN_SPACING {
+        knots.push(high);
+    }
+    let mut best = solve(&knots, plain, &moves);
+    while knots.len() < max_knots && best.1 > GOOD_ENOUGH {
+        let candidate = levels
+            .iter()
+            .filter(|v| knots.iter().all(|k| (*k - **v).abs() > MIN_SPACING))
+            .map(|&v| {
+                let mut trial = knots.clone();
+                trial.push(v);
+                trial.sort_by(f32::total_cmp);
+                let fit = solve(&trial, plain, &moves);
+                (trial, fit)
+            })
+            .min_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let Some((trial, fit)) = candidate else { break };
+        (knots, best) = (trial, fit);
+    }
+    let hinted = best
+        .0
+        .iter()
+        .zip(ppem)
+        .map(|(row, &s)| row.iter().zip(&knots).map(|(d, k)| *d as f32 + *k * f32::from(s)).collect())
+        .collect();
+    Warp { knots, hinted }
+}
+
+/// Displacements (pixels) of `knots` for each size that explain `moves` best, and the mean squared residual.
+fn solve(knots: &[f32], plain: &[f32], moves: &[Vec<f64>]) -> (Vec<Vec<f64>>, f64) {
+    let n = knots.len();
+    let basis: Vec<(usize, f64)> = plain.iter().map(|&p| hat(knots, p)).collect();
+    let mut normal = vec![0.0; n * n];
+    for &(k, t) in &basis {
+        normal[k * n + k] += (1.0 - t) * (1.0 - t);
+        if k + 1 < n {
+            normal[k * n + k + 1] += t * (1.0 - t);
+            normal[(k + 1) * n + k] += t * (1.0 - t);
+            normal[(k + 1) * n + k + 1] += t * t;
+        }
+    }
+    for k in 1..n {
+        for (row, column, sign) in [(k, k, 1.0), (k - 1, k - 1, 1.0), (k, k - 1, -1.0), (k - 1, k, -1.0)] {
+            normal[row * n + column] += sign * RIDGE;
+        }
+    }
+    let mut squares = 0.0;
+    let solved = moves
+        .iter()
+        .map(|row| {
+            let mut right = vec![0.0; n];
+            for (&(k, t), d) in basis.iter().zip(row) {
+                right[k] += (1.0 - t) * d;
+                if k + 1 < n {
+                    right[k + 1] += t * d;
+                }
+            }
+            tridiagonal(&normal, &mut right);
+            for (&(k, t), d) in basis.iter().zip(row) {
+                let next = if k + 1 < n { right[k + 1] } else { right[k] };
+                squares += ((1.0 - t) * right[k] + t * next - d).powi(2);
+            }
+            right
+        })
+        .collect();
+    (solved, squares / (moves.len() * plain.len()).max(1) as f64)
+}
+
+/// The knot at or below `p` and how far `p` lies towards the next one, 0..1.
+fn hat(knots: &[f32], p: f32) -> (usize, f64) {
+    let last = knots.len() - 1;
+    let k = knots.partition_point(|k| *k <= p).saturating_sub(1).min(last.saturating_sub(1));
+    if last == 0 {
+        return (0, 0.0);
+    }
+    (k, f64::from(((p - knots[k]) / (knots[k + 1] - knots[k])).clamp(0.0, 1.0)))
+}
+
+/// Solves a symmetric positive definite tridiagonal system (dense storage) in place.
+fn tridiagonal(matrix: &[f64], right: &mut [f64]) {
+    let n = right.len();
+    let mut diagonal: Vec<f64> = (0..n).map(|k| matrix[k * n + k].max(1e-12)).collect();
+    for k in 1..n {
+        let factor = matrix[k * n + k - 1] / diagonal[k - 1];
+        diagonal[k] = (diagonal[k] - factor * matrix[(k - 1) * n + k]).max(1e-12);
+        right[k] -= factor * right[k - 1];
+    }
+    for k in (0..n).rev() {
+        let above = if k + 1 < n { matrix[k * n + k + 1] * right[k + 1] } else { 0.0 };
+        right[k] = (right[k] - above) / diagonal[k];
+    }
+}
