@@ -63,7 +63,7 @@ fn main() {
             let mut sc = Scratch::default();
             let (mut gn, mut gabs, mut gbad) = (0usize, 0usize, 0usize);
             for h in &l.sizes {
-                let p = m.placement(h.ppem as f32, &mut sc);
+                let p = m.placement(h.ppem as f32).unwrap();
                 let mut px = vec![0u8; p.area()];
                 m.draw(h.ppem as f32, p, &mut sc, &mut px);
                 let q = h.bitmap.placement;
@@ -111,7 +111,24 @@ fn main() {
         );
     };
     stats(&drafts, false);
-    if arg("show", 0.0) > 0.0 { let s = arg("show", 0.0) as usize; let m = GridFit::new(&drafts[0].quantise(), scale).unwrap(); let mut sc = Scratch::default(); let p = m.placement(s as f32, &mut sc); let mut px = vec![0; p.area()]; m.draw(s as f32, p, &mut sc, &mut px); let dump = |p: nfr::Placement, px: &[u8]| { println!("{p:?}"); for r in px.chunks(p.width.max(1) as usize) { println!("{}", r.iter().map(|v| format!("{v:4}")).collect::<String>()); } }; dump(p, &px); let b = &lessons[0].sizes[s - 8].bitmap; dump(b.placement, &b.pixels); println!("{:?}", drafts[0].hinted[1].chunks(drafts[0].knots[1].len()).nth(s-8)); }
+    if arg("show", 0.0) > 0.0 {
+        let s = arg("show", 0.0) as usize;
+        let m = GridFit::new(&drafts[0].quantise(), scale).unwrap();
+        let mut sc = Scratch::default();
+        let p = m.placement(s as f32).unwrap();
+        let mut px = vec![0; p.area()];
+        m.draw(s as f32, p, &mut sc, &mut px);
+        let dump = |p: nfr::Placement, px: &[u8]| {
+            println!("{p:?}");
+            for r in px.chunks(p.width.max(1) as usize) {
+                println!("{}", r.iter().map(|v| format!("{v:4}")).collect::<String>());
+            }
+        };
+        dump(p, &px);
+        let b = &lessons[0].sizes[s - 8].bitmap;
+        dump(b.placement, &b.pixels);
+        println!("{:?}", drafts[0].hinted[1].chunks(drafts[0].knots[1].len()).nth(s - 8));
+    }
     let device = burn::tensor::Device::flex();
     let t1 = std::time::Instant::now();
     let jobs = arg("jobs", 2.0) as usize;
@@ -129,7 +146,24 @@ fn main() {
             }
         });
     }
-    println!("train {:?}", t1.elapsed()); if arg("show2", 0.0) > 0.0 { let s = arg("show2", 0.0) as usize; let m = GridFit::new(&drafts[0].quantise(), scale).unwrap(); let mut sc = Scratch::default(); let p = m.placement(s as f32, &mut sc); let mut px = vec![0; p.area()]; m.draw(s as f32, p, &mut sc, &mut px); let dump = |p: nfr::Placement, px: &[u8]| { println!("{p:?}"); for r in px.chunks(p.width.max(1) as usize) { println!("{}", r.iter().map(|v| format!("{v:4}")).collect::<String>()); } }; dump(p, &px); let b = &lessons[0].sizes[s - 8].bitmap; dump(b.placement, &b.pixels);}
+    println!("train {:?}", t1.elapsed());
+    if arg("show2", 0.0) > 0.0 {
+        let s = arg("show2", 0.0) as usize;
+        let m = GridFit::new(&drafts[0].quantise(), scale).unwrap();
+        let mut sc = Scratch::default();
+        let p = m.placement(s as f32).unwrap();
+        let mut px = vec![0; p.area()];
+        m.draw(s as f32, p, &mut sc, &mut px);
+        let dump = |p: nfr::Placement, px: &[u8]| {
+            println!("{p:?}");
+            for r in px.chunks(p.width.max(1) as usize) {
+                println!("{}", r.iter().map(|v| format!("{v:4}")).collect::<String>());
+            }
+        };
+        dump(p, &px);
+        let b = &lessons[0].sizes[s - 8].bitmap;
+        dump(b.placement, &b.pixels);
+    }
     stats(&drafts, true);
     let (mut f, mut w, mut p, mut e, mut k) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let z = |v: f64| v / drafts.len() as f64;
@@ -156,6 +190,7 @@ fn main() {
         p += entropy(q.patterns.iter().map(|v| *v as i32));
         e += entropy(q.embedding.iter().map(|v| *v as i32));
     }
+    warp_study(&drafts);
     println!(
         "bytes (order-0, per glyph) field {:.0} warp {:.0} ({:.1} knots) patterns {:.0} embedding {:.0} total {:.0}",
         z(f),
@@ -165,4 +200,77 @@ fn main() {
         z(e),
         z(f + w + p + e)
     );
+}
+#[allow(dead_code)]
+fn warp_study(drafts: &[Draft]) {
+    // per knot sequences, several predictors; entropies per knot (order-0, own table) and pooled over font
+    let n = drafts.len() as f64;
+    let names = [
+        "round",
+        "linear",
+        "round(h)+delta prev",
+        "disp delta",
+        "prev knot + round gap",
+        "prev knot + linear gap",
+        "best of all per knot (pooled by kind)",
+        "interp neighbours",
+    ];
+    let mut pooled: Vec<Vec<i32>> = vec![vec![]; 8];
+    let mut own = [0.0f64; 8];
+    for d in drafts {
+        let q = d.quantise();
+        let nk = q.warp_y.knots.len();
+        if nk == 0 {
+            continue;
+        }
+        let h = |s: usize, k: usize| q.warp_y.hinted[s * nk + k];
+        let kn = |k: usize| q.warp_y.knots[k] as f32 / 2048.0;
+        for k in 0..nk {
+            let mut v: Vec<Vec<i32>> = vec![vec![]; 8];
+            for s in 0..57 {
+                let p = (8 + s) as f32;
+                let lin = |k: usize, p: f32| (kn(k) * p * 32.0).round() as i32;
+                v[0].push(h(s, k) - 32 * (kn(k) * p).round() as i32);
+                v[1].push(h(s, k) - lin(k, p));
+                let r = |s: usize| h(s, k) - 32 * (kn(k) * (8 + s) as f32).round() as i32;
+                v[2].push(if s > 0 { r(s) - r(s - 1) } else { r(s) });
+                let dd = |s: usize| h(s, k) - lin(k, (8 + s) as f32);
+                v[3].push(if s > 0 { dd(s) - dd(s - 1) } else { dd(s) });
+                v[4].push(if k > 0 {
+                    h(s, k) - h(s, k - 1) - 32 * ((kn(k) - kn(k - 1)) * p).round() as i32
+                } else {
+                    h(s, k) - 32 * (kn(k) * p).round() as i32
+                });
+                v[5].push(if k > 0 {
+                    h(s, k) - h(s, k - 1) - ((kn(k) - kn(k - 1)) * p * 32.0).round() as i32
+                } else {
+                    h(s, k) - 32 * (kn(k) * p).round() as i32
+                });
+                v[7].push(if k > 0 && k + 1 < nk {
+                    let t = (kn(k) - kn(k - 1)) / (kn(k + 1) - kn(k - 1));
+                    h(s, k) - (h(s, k - 1) as f32 + t * (h(s, k + 1) - h(s, k - 1)) as f32).round() as i32
+                } else {
+                    h(s, k) - 32 * (kn(k) * p).round() as i32
+                });
+            }
+            let e: Vec<f64> =
+                v.iter().map(|x| if x.is_empty() { 1e9 } else { entropy(x.iter().copied()) }).collect();
+            let best = (0..8).filter(|i| *i != 6).min_by(|a, b| e[*a].total_cmp(&e[*b])).unwrap();
+            v[6] = v[best].clone();
+            for i in 0..8 {
+                own[i] += entropy(v[i].iter().copied());
+                pooled[i].extend(&v[i]);
+            }
+        }
+    }
+    for i in 0..8 {
+        println!(
+            "{:40} own {:.0} pooled {:.0}",
+            names[i],
+            own[i] / n,
+            entropy(pooled[i].iter().copied()) / n
+        );
+    }
+    let snapped = drafts.iter().flat_map(|d| d.quantise().warp_y.hinted).filter(|h| h % 32 == 0).count();
+    println!("on grid: {} of {}", snapped, drafts.iter().map(|d| d.hinted[1].len()).sum::<usize>());
 }

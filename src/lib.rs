@@ -12,4 +12,5 @@ pub mod convert;
 
 pub use error::Error;
 pub use model::Target;
-pub use render::{Bitmap, Font, Glyph, Placement, Scratch};
+pub use model::gridfit::Scratch;
+pub use render::{Bitmap, Font, Glyph, Placement, Rasterizer};

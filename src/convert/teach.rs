@@ -1,8 +1,9 @@
 //! Lessons: everything that one glyph's model learns from, drawn once.
 
-use crate::convert::teacher::{Outline, Teacher, TeacherAt};
+use crate::convert::teacher::{Teacher, TeacherAt};
 use crate::error::Error;
 use crate::render::Bitmap;
+use crate::render::outline::Outline;
 
 /// One glyph as the teacher shows it.
 #[derive(Debug, Clone)]

@@ -4,6 +4,9 @@
 //! Every operation here is an IEEE 754 addition, subtraction, multiplication, division, comparison or
 //! conversion in a fixed order, so that the pixels are the same on every machine.
 
+use crate::error::Error;
+use crate::render::Placement;
+
 /// Hinted knot positions are stored in this fraction of a pixel.
 pub const WARP_STEPS: f32 = 32.0;
 /// Field coefficients are stored in this fraction of an em.
@@ -28,11 +31,12 @@ pub const MIN_GRADIENT: f32 = 0.03;
 pub const MIN_SKEW: f32 = 0.02;
 /// A hinted box may reach this far (pixels) into a pixel without claiming it: two steps of the warp.
 const BOX_SLACK: f32 = 1.0 / 16.0;
+/// The largest size that is drawn, in pixels per em.
+pub const MAX_PPEM: f32 = 2048.0;
+/// The longest side of a bitmap in pixels.
+const MAX_SIDE: u32 = 8192;
 /// Displacements fade to nothing over this share of the size beyond the trained ones.
 const FADE_SPAN: f32 = 0.125;
-
-use crate::error::Error;
-use crate::render::Placement;
 
 /// One axis of the warp: knots in font units and their hinted positions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -230,6 +234,13 @@ impl GridFit {
         })
     }
 
+    /// The memory that the model takes, in bytes.
+    pub fn memory(&self) -> usize {
+        let floats = [&self.field, &self.patterns, &self.embedding].map(Vec::len).iter().sum::<usize>()
+            + self.knots.iter().chain(&self.moves).map(Vec::len).sum::<usize>();
+        size_of::<Self>() + floats * size_of::<f32>()
+    }
+
     /// Weights `(size index, next, share of next, strength)` that stand for a size: between two trained sizes
     /// their displacements are mixed, beyond the trained ones they fade.
     fn mix(&self, ppem: f32) -> (usize, usize, f32, f32) {
@@ -242,36 +253,47 @@ impl GridFit {
     }
 
     /// Hinted positions in pixels of an axis's knots, ascending.
-    fn hinted_knots(&self, axis: usize, ppem: f32, out: &mut Vec<f32>) {
+    fn hinted_knots(&self, axis: usize, ppem: f32) -> impl Iterator<Item = f32> + '_ {
         let (size, next, share, strength) = self.mix(ppem);
-        let count = self.knots[axis].len();
-        out.clear();
+        let (knots, moves) = (&self.knots[axis], &self.moves[axis]);
         let mut floor = f32::NEG_INFINITY;
-        for (k, knot) in self.knots[axis].iter().enumerate() {
-            let (a, b) = (self.moves[axis][size * count + k], self.moves[axis][next * count + k]);
+        knots.iter().enumerate().map(move |(k, knot)| {
+            let (a, b) = (moves[size * knots.len() + k], moves[next * knots.len() + k]);
             let hinted = (knot * ppem + (a + (b - a) * share) * strength).max(floor);
             floor = hinted + MIN_KNOT_GAP;
-            out.push(hinted);
-        }
+            hinted
+        })
     }
 
     /// Where the bitmap lies at a size.
-    pub fn placement(&self, ppem: f32, scratch: &mut Scratch) -> Placement {
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter` for a size that is not in `0..=MAX_PPEM`, `LimitExceeded` for a bitmap that is larger
+    /// than `MAX_SIDE` on a side.
+    pub fn placement(&self, ppem: f32) -> Result<Placement, Error> {
+        if !(ppem > 0.0 && ppem <= MAX_PPEM) {
+            return Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_PPEM}")));
+        }
         if self.field.is_empty() {
-            return Placement::default();
+            return Ok(Placement::default());
         }
-        let mut range = [(0i32, 0i32); 2];
-        for axis in 0..2 {
-            let hinted = &mut scratch.hinted[axis];
-            self.hinted_knots(axis, ppem, hinted);
-            let plain = [self.bounds[axis] * ppem, self.bounds[axis + 2] * ppem];
-            let low = hinted.first().copied().unwrap_or(plain[0]);
-            let high = hinted.last().copied().unwrap_or(plain[1]);
-            range[axis] = ((low + BOX_SLACK).floor() as i32, (high - BOX_SLACK).ceil() as i32);
-            range[axis].1 = range[axis].1.max(range[axis].0.saturating_add(1));
+        let range = |axis: usize| {
+            let mut hinted = self.hinted_knots(axis, ppem);
+            let low = hinted.next().unwrap_or(self.bounds[axis] * ppem);
+            let high = hinted.last().unwrap_or(self.bounds[axis + 2] * ppem);
+            let first = (low + BOX_SLACK).floor() as i32;
+            (first, ((high - BOX_SLACK).ceil() as i32).max(first.saturating_add(1)))
+        };
+        let [(left, right), (bottom, top)] = [range(0), range(1)];
+        let place = Placement { left, top, width: right.abs_diff(left), height: top.abs_diff(bottom) };
+        if place.width > MAX_SIDE || place.height > MAX_SIDE {
+            return Err(Error::LimitExceeded(format!(
+                "a bitmap of {}×{} pixels at {ppem} ppem",
+                place.width, place.height
+            )));
         }
-        let [(left, right), (bottom, top)] = range;
-        Placement { left, top, width: right.abs_diff(left), height: top.abs_diff(bottom) }
+        Ok(place)
     }
 
     /// Draws the pixels of `placement` at a size. `pixels` has `placement.area()` bytes, top row first.
@@ -281,10 +303,9 @@ impl GridFit {
         }
         let n = samples_per_pixel(ppem);
         let (width, height) = (placement.width as usize, placement.height as usize);
-        for axis in 0..2 {
-            let mut hinted = std::mem::take(&mut scratch.hinted[axis]);
-            self.hinted_knots(axis, ppem, &mut hinted);
-            scratch.hinted[axis] = hinted;
+        for (axis, hinted) in scratch.hinted.iter_mut().enumerate() {
+            hinted.clear();
+            hinted.extend(self.hinted_knots(axis, ppem));
         }
         self.mix_patterns(ppem, &mut scratch.deform);
         let per_em = ppem * n as f32;

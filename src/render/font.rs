@@ -1,96 +1,212 @@
-//! A font that carries models: looking glyphs up and drawing them.
+//! A font that carries models: looking glyphs up and decoding their models.
 
+use read_fonts::tables::{cmap::Cmap, hmtx::Hmtx};
+use read_fonts::types::Tag;
 use read_fonts::{FontRef, TableProvider};
 
 use super::{Bitmap, Placement};
 use crate::error::Error;
 use crate::model::Target;
+use crate::model::gridfit::{GridFit, Scale, Scratch};
+use crate::table::{self, Header, ModelDecoder, Table};
 
-/// Working memory that rendering reuses, so that a warm loop allocates nothing.
-#[derive(Debug, Default)]
-pub struct Scratch {}
-
-/// A font with an `Nfrt` table, borrowed from the file's bytes.
+/// A font with an `Nfrt` table, borrowed from the file's bytes. Opening it reads headers only.
 #[derive(Clone)]
 pub struct Font<'a> {
     font: FontRef<'a>,
-    units_per_em: u16,
+    cmap: Option<Cmap<'a>>,
+    hmtx: Option<Hmtx<'a>>,
+    table: Table<'a>,
+    scale: Scale,
+    glyph_count: u16,
+}
+
+impl std::fmt::Debug for Font<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Font").field("table", &self.table).field("scale", &self.scale).finish_non_exhaustive()
+    }
 }
 
 impl<'a> Font<'a> {
-    /// Opens a font file's bytes.
+    /// Opens the first font of a file's bytes.
     ///
     /// # Errors
     ///
-    /// `Malformed` for bytes that are no font, `Unsupported` for a font without an `Nfrt` table.
+    /// As [`Font::from_index`].
     pub fn parse(data: &'a [u8]) -> Result<Self, Error> {
-        let font = FontRef::new(data).map_err(|e| Error::Malformed(e.to_string()))?;
-        let units_per_em = font.head().map_err(|e| Error::Malformed(e.to_string()))?.units_per_em();
-        Ok(Self { font, units_per_em })
+        Self::from_index(data, 0)
+    }
+
+    /// Opens one font of a file's bytes. `index` counts the fonts of a collection and is 0 for a plain font.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` for bytes that are no font or contradict themselves, `Unsupported` for a font without an
+    /// `Nfrt` table or with one from the future, `InvalidParameter` for an index that is out of range.
+    pub fn from_index(data: &'a [u8], index: u32) -> Result<Self, Error> {
+        let font = open(data, index)?;
+        let bytes = font.table_data(table::TAG).ok_or_else(|| {
+            Error::Unsupported("the font has no 'Nfrt' table; make one with nfr-convert".into())
+        })?;
+        let table = Table::parse(bytes.as_bytes())?;
+        let units_per_em = head_units(&font)?;
+        let header = table.header();
+        let scale = Scale { units_per_em, first_ppem: header.first_ppem, last_ppem: header.last_ppem };
+        let glyph_count = font
+            .maxp()
+            .map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e})")))?
+            .num_glyphs();
+        Ok(Self { cmap: font.cmap().ok(), hmtx: font.hmtx().ok(), font, table, scale, glyph_count })
+    }
+
+    /// What the conversion was asked for.
+    pub fn header(&self) -> &Header {
+        self.table.header()
     }
 
     /// What the models were trained for.
     pub fn target(&self) -> Target {
-        Target::Smooth
+        self.header().target
     }
 
-    /// The sizes that the models were trained on, in pixels per em.
+    /// The sizes that the models were trained on, in pixels per em, both ends included.
     pub fn ppem_range(&self) -> (u16, u16) {
-        (8, 64)
+        (self.scale.first_ppem, self.scale.last_ppem)
     }
 
     /// The length of the `Nfrt` table in bytes.
     pub fn table_len(&self) -> usize {
-        0
+        self.table.table_len()
     }
 
-    /// The glyphs that have a model, in order.
-    pub fn modelled_glyphs(&self) -> impl Iterator<Item = u16> + '_ {
-        std::iter::empty()
+    /// The bytes that a glyph's model takes in the table.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` if it has none.
+    pub fn model_len(&self, gid: u16) -> Result<usize, Error> {
+        self.table.model_len(gid)
+    }
+
+    /// The number of glyphs in the font, with a model or without.
+    pub fn glyph_count(&self) -> u16 {
+        self.glyph_count
+    }
+
+    /// The glyphs that have a model, ascending.
+    pub fn modelled_glyphs(&self) -> impl ExactSizeIterator<Item = u16> + 'a {
+        self.table.gids()
+    }
+
+    /// Whether a glyph has a model.
+    pub fn has_model(&self, gid: u16) -> bool {
+        self.table.contains(gid)
     }
 
     /// The glyph that the font's character map gives for a character.
     pub fn glyph_for_char(&self, character: char) -> Option<u16> {
-        let gid = self.font.cmap().ok()?.map_codepoint(character)?;
-        u16::try_from(gid.to_u32()).ok()
+        u16::try_from(self.cmap.as_ref()?.map_codepoint(character)?.to_u32()).ok()
     }
 
-    /// The advance width in pixels, linear in the size.
+    /// The advance width in pixels, linear in the size; 0 for a glyph that the font does not have.
     pub fn advance(&self, gid: u16, ppem: f32) -> f32 {
-        let _ = (gid, ppem, self.units_per_em);
-        0.0
+        if gid >= self.glyph_count {
+            return 0.0;
+        }
+        let units = self.hmtx.as_ref().and_then(|hmtx| hmtx.advance(gid.into())).unwrap_or(0);
+        f32::from(units) * ppem / f32::from(self.scale.units_per_em)
     }
 
-    /// Whether the outlines in this font are the ones that the models were trained from.
+    /// Whether the outlines in this font are the ones that the models were trained from. Reads all of them.
     pub fn outlines_match(&self) -> bool {
-        true
+        let glyf = self.font.table_data(Tag::new(b"glyf"));
+        glyf.is_some_and(|glyf| {
+            table::outline_hash(self.scale.units_per_em, glyf.as_bytes()) == self.header().outline_hash
+        })
     }
 
-    /// Decodes a glyph's model.
+    /// Decodes a glyph's model. To draw many glyphs, a [`Rasterizer`](super::Rasterizer) keeps what this
+    /// sets up and throws away.
     ///
     /// # Errors
     ///
-    /// `MissingGlyph` if it has none, `Malformed` if its bytes are damaged.
+    /// `MissingGlyph` if it has none, `Malformed` or `LimitExceeded` if its bytes are damaged.
     pub fn glyph(&self, gid: u16) -> Result<Glyph, Error> {
-        Err(Error::MissingGlyph(gid))
+        self.glyph_with(&mut ModelDecoder::new(&self.table)?, gid)
+    }
+
+    pub(super) fn decoder(&self) -> Result<ModelDecoder, Error> {
+        ModelDecoder::new(&self.table)
+    }
+
+    pub(super) fn glyph_with(&self, decoder: &mut ModelDecoder, gid: u16) -> Result<Glyph, Error> {
+        let weights = decoder.decode(&self.table, gid, self.scale)?;
+        Ok(Glyph { model: GridFit::new(&weights, self.scale)? })
+    }
+
+    #[cfg(feature = "fallback")]
+    pub(super) fn outlines(&self) -> skrifa::outline::OutlineGlyphCollection<'a> {
+        skrifa::MetadataProvider::outline_glyphs(&self.font)
+    }
+}
+
+/// Opens one font of a file.
+pub(crate) fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
+    match read_fonts::FileRef::new(data) {
+        Err(_) => Err(Error::Malformed(
+            "these bytes are no OpenType font; pass a .ttf file or a collection of them".into(),
+        )),
+        Ok(read_fonts::FileRef::Font(font)) if index == 0 => Ok(font),
+        Ok(read_fonts::FileRef::Font(_)) => Err(Error::InvalidParameter(format!(
+            "font index {index} in a file that holds one font; use index 0"
+        ))),
+        Ok(read_fonts::FileRef::Collection(fonts)) => {
+            if index >= fonts.len() {
+                return Err(Error::InvalidParameter(format!(
+                    "font index {index} in a collection of {} fonts; use 0–{}",
+                    fonts.len(),
+                    fonts.len().saturating_sub(1)
+                )));
+            }
+            fonts
+                .get(index)
+                .map_err(|e| Error::Malformed(format!("font {index} of the collection cannot be read ({e})")))
+        }
+    }
+}
+
+/// Font units in an em, checked.
+pub(crate) fn head_units(font: &FontRef<'_>) -> Result<u16, Error> {
+    let head = font.head().map_err(|e| {
+        Error::Malformed(format!("table 'head' cannot be read ({e}); the file may be truncated"))
+    })?;
+    match head.units_per_em() {
+        units @ 16..=16384 => Ok(units),
+        units => {
+            Err(Error::Malformed(format!("table 'head' claims {units} units per em, 16–16384 are allowed")))
+        }
     }
 }
 
 /// One glyph's model, decoded and ready to draw at any size.
 #[derive(Debug, Clone)]
-pub struct Glyph {}
+pub struct Glyph {
+    model: GridFit,
+}
 
 impl Glyph {
-    /// Where the bitmap lies at a size, which may be fractional.
+    /// Where the bitmap lies at a size in pixels per em, which may be fractional.
     ///
     /// # Errors
     ///
-    /// `InvalidParameter` for a size that is not a positive number within the limits.
+    /// `InvalidParameter` for a size that is not a positive number, `LimitExceeded` for a bitmap that would
+    /// be too large.
     pub fn placement(&self, ppem: f32) -> Result<Placement, Error> {
-        Err(Error::InvalidParameter(ppem.to_string()))
+        self.model.placement(ppem)
     }
 
-    /// Draws into `pixels`, top row first, `placement.width` bytes a row.
+    /// Draws coverage 0–255 into `pixels`, top row first, `placement.width` bytes a row. Bytes beyond the
+    /// bitmap are left alone. Once `scratch` has grown, nothing is allocated.
     ///
     /// # Errors
     ///
@@ -98,10 +214,13 @@ impl Glyph {
     pub fn render_into(
         &self,
         ppem: f32,
-        _scratch: &mut Scratch,
-        _pixels: &mut [u8],
+        scratch: &mut Scratch,
+        pixels: &mut [u8],
     ) -> Result<Placement, Error> {
-        self.placement(ppem)
+        let placement = self.placement(ppem)?;
+        let pixels = buffer_for(placement, pixels)?;
+        self.model.draw(ppem, placement, scratch, pixels);
+        Ok(placement)
     }
 
     /// Draws into a new bitmap.
@@ -112,7 +231,23 @@ impl Glyph {
     pub fn render(&self, ppem: f32) -> Result<Bitmap, Error> {
         let placement = self.placement(ppem)?;
         let mut pixels = vec![0; placement.area()];
-        self.render_into(ppem, &mut Scratch::default(), &mut pixels)?;
+        self.model.draw(ppem, placement, &mut Scratch::default(), &mut pixels);
         Ok(Bitmap { placement, pixels })
     }
+
+    /// The memory that the model takes, in bytes.
+    pub fn memory(&self) -> usize {
+        self.model.memory()
+    }
+}
+
+/// The part of a caller's buffer that a bitmap takes.
+pub(super) fn buffer_for(placement: Placement, pixels: &mut [u8]) -> Result<&mut [u8], Error> {
+    let have = pixels.len();
+    pixels.get_mut(..placement.area()).ok_or_else(|| {
+        Error::InvalidParameter(format!(
+            "a buffer of {have} bytes for a bitmap of {}×{}; ask for the placement first",
+            placement.width, placement.height
+        ))
+    })
 }

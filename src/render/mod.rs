@@ -1,8 +1,12 @@
 //! From a model to pixels.
 
 mod font;
+#[cfg(any(feature = "convert", feature = "fallback"))]
+pub mod outline;
+mod rasterizer;
 
-pub use font::{Font, Glyph, Scratch};
+pub use font::{Font, Glyph};
+pub use rasterizer::Rasterizer;
 
 /// Where a bitmap lies relative to the pen, in pixels (FreeType's `bitmap_left` and `bitmap_top`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]

@@ -1,1 +1,64 @@
-//! table
+//! The `Nfrt` table: layout, zero-copy reader, writer. `spec/nfrt.md` describes the bytes.
+
+pub mod codec;
+mod reader;
+#[cfg(feature = "convert")]
+mod writer;
+
+pub use reader::{ModelDecoder, Table};
+#[cfg(feature = "convert")]
+pub use writer::{GlyphModel, write};
+
+use crate::model::Target;
+use read_fonts::types::Tag;
+
+/// The table's tag.
+pub const TAG: Tag = Tag::new(b"Nfrt");
+/// The layout that this crate reads and writes. Readers refuse other major versions.
+pub const MAJOR_VERSION: u16 = 1;
+/// Additions that older readers can ignore count this up.
+pub const MINOR_VERSION: u16 = 0;
+/// Bytes before the arrays.
+pub(crate) const HEADER_LEN: usize = 44;
+/// The four bytes that begin a zstd frame; they are left out of the table.
+pub(crate) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
+/// No model decompresses to more than this.
+pub(crate) const MAX_MODEL_BYTES: usize = 1 << 16;
+/// No zstd dictionary is larger than this.
+pub(crate) const MAX_DICTIONARY_BYTES: usize = 1 << 16;
+/// The largest trained size, in pixels per em.
+pub const MAX_TRAINED_PPEM: u16 = 1024;
+
+/// What a conversion was asked for, as the table records it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Header {
+    /// What the teacher hinted for.
+    pub target: Target,
+    /// The smallest trained size in pixels per em.
+    pub first_ppem: u16,
+    /// The largest trained size.
+    pub last_ppem: u16,
+    /// FNV-1a of the outlines that the models were trained from.
+    pub outline_hash: u64,
+    /// The seed of the training.
+    pub seed: u64,
+    /// Optimiser steps.
+    pub steps: u16,
+    /// The most knots of an axis.
+    pub knots: u8,
+    /// The deformation's rank.
+    pub rank: u8,
+    /// Edge of a field cell in 1/10000 em.
+    pub cell: u16,
+}
+
+/// FNV-1a, 64 bits, over a byte string; `state` is the hash so far.
+pub fn fnv1a(state: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(state, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3))
+}
+
+/// The value that ties a table to its font's outlines: FNV-1a over `unitsPerEm` (big-endian) and the bytes of
+/// the `glyf` table.
+pub fn outline_hash(units_per_em: u16, glyf: &[u8]) -> u64 {
+    fnv1a(fnv1a(0xCBF2_9CE4_8422_2325, &units_per_em.to_be_bytes()), glyf)
+}

@@ -8,9 +8,7 @@ use burn::tensor::{Device, Int, Tensor, TensorData};
 use crate::convert::start::Draft;
 use crate::convert::teach::{HintedGlyph, Lesson};
 use crate::error::Error;
-use crate::model::gridfit::{
-    DEFORM_NODES, GridAxis, GridFit, SLOPE_REACH, Scale, Scratch, samples_per_pixel,
-};
+use crate::model::gridfit::{DEFORM_NODES, GridAxis, GridFit, SLOPE_REACH, Scale, samples_per_pixel};
 use crate::render::Placement;
 
 /// Groups that the sizes are dealt into, each one a spread over the whole range.
@@ -160,10 +158,9 @@ impl Group {
         let mut pixels: Vec<Pixel> = Vec::new();
         for (glyph, (lesson, draft)) in lessons.iter().zip(drafts).enumerate() {
             let model = GridFit::new(&draft.quantise(), scale)?;
-            let mut scratch = Scratch::default();
             for (size, hinted) in lesson.sizes.iter().enumerate().skip(group).step_by(GROUPS) {
                 let ppem = f32::from(hinted.ppem);
-                let place = widened(model.placement(ppem, &mut scratch));
+                let place = widened(model.placement(ppem)?);
                 let n = samples_per_pixel(ppem);
                 let (first_column, first_row) = (lines[0][glyph].len(), lines[1][glyph].len());
                 for i in 0..place.width as usize * n {

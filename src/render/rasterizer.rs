@@ -1,0 +1,141 @@
+//! Drawing many glyphs: decoded models are kept in a cache whose size the caller sets.
+
+use std::collections::HashMap;
+
+use super::font::buffer_for;
+use super::{Bitmap, Font, Glyph, Placement};
+use crate::error::Error;
+use crate::model::gridfit::Scratch;
+use crate::table::ModelDecoder;
+
+/// Decoded models take up to this many bytes unless the caller says otherwise: about 600 glyphs.
+const DEFAULT_CACHE: usize = 8 << 20;
+
+/// Draws a font's glyphs. With the feature `fallback`, a glyph that has no model is drawn from its unhinted
+/// outline; without it, such a glyph is [`Error::MissingGlyph`].
+pub struct Rasterizer<'a> {
+    font: Font<'a>,
+    decoder: ModelDecoder,
+    cache: Cache,
+    scratch: Scratch,
+}
+
+impl<'a> Rasterizer<'a> {
+    /// A rasterizer with a cache of 8 MiB.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if the table's dictionary is damaged.
+    pub fn new(font: &Font<'a>) -> Result<Self, Error> {
+        Self::with_cache(font, DEFAULT_CACHE)
+    }
+
+    /// A rasterizer that keeps decoded models of at most `bytes` bytes, and always at least the last one.
+    ///
+    /// # Errors
+    ///
+    /// As `new`.
+    pub fn with_cache(font: &Font<'a>, bytes: usize) -> Result<Self, Error> {
+        let cache = Cache { limit: bytes, ..Cache::default() };
+        Ok(Self { decoder: font.decoder()?, font: font.clone(), cache, scratch: Scratch::default() })
+    }
+
+    /// The font that is drawn.
+    pub fn font(&self) -> &Font<'a> {
+        &self.font
+    }
+
+    /// Where a glyph's bitmap lies at a size in pixels per em, which may be fractional.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` for a glyph without a model (with `fallback`: for one that the font does not have),
+    /// `Malformed` for a damaged one, `InvalidParameter` for a size that is not a positive number,
+    /// `LimitExceeded` for a bitmap that would be too large.
+    pub fn placement(&mut self, gid: u16, ppem: f32) -> Result<Placement, Error> {
+        #[cfg(feature = "fallback")]
+        if !self.font.has_model(gid) {
+            return self.outline(gid, ppem).map(|bitmap| bitmap.placement);
+        }
+        self.cache.get(&self.font, &mut self.decoder, gid)?.placement(ppem)
+    }
+
+    /// Draws a glyph's coverage, 0–255, into `pixels`: top row first, `placement.width` bytes a row. Bytes
+    /// beyond the bitmap are left alone. A glyph that is in the cache is drawn without allocating.
+    ///
+    /// # Errors
+    ///
+    /// As `placement`, and `InvalidParameter` for a buffer that is too small.
+    pub fn render_into(&mut self, gid: u16, ppem: f32, pixels: &mut [u8]) -> Result<Placement, Error> {
+        #[cfg(feature = "fallback")]
+        if !self.font.has_model(gid) {
+            let bitmap = self.outline(gid, ppem)?;
+            buffer_for(bitmap.placement, pixels)?.copy_from_slice(&bitmap.pixels);
+            return Ok(bitmap.placement);
+        }
+        let glyph = self.cache.get(&self.font, &mut self.decoder, gid)?;
+        glyph.render_into(ppem, &mut self.scratch, pixels)
+    }
+
+    /// Draws a glyph into a new bitmap.
+    ///
+    /// # Errors
+    ///
+    /// As `placement`.
+    pub fn render(&mut self, gid: u16, ppem: f32) -> Result<Bitmap, Error> {
+        let placement = self.placement(gid, ppem)?;
+        let mut pixels = vec![0; placement.area()];
+        self.render_into(gid, ppem, &mut pixels)?;
+        Ok(Bitmap { placement, pixels })
+    }
+
+    #[cfg(feature = "fallback")]
+    fn outline(&self, gid: u16, ppem: f32) -> Result<Bitmap, Error> {
+        use skrifa::instance::{LocationRef, Size};
+        use skrifa::outline::DrawSettings;
+        if !(ppem > 0.0 && ppem <= crate::model::gridfit::MAX_PPEM) {
+            return Err(Error::InvalidParameter(format!("{ppem} is no size in pixels per em")));
+        }
+        let outlines = self.font.outlines();
+        let glyph = outlines.get(skrifa::GlyphId::from(gid)).ok_or(Error::MissingGlyph(gid))?;
+        let mut outline = super::outline::Outline::default();
+        glyph
+            .draw(DrawSettings::unhinted(Size::new(ppem), LocationRef::default()), &mut outline)
+            .map_err(|e| Error::Malformed(format!("the outline of glyph {gid} cannot be drawn ({e})")))?;
+        Ok(outline.rasterize())
+    }
+}
+
+/// Decoded models, the least recently used of which make room.
+#[derive(Default)]
+struct Cache {
+    limit: usize,
+    bytes: usize,
+    clock: u64,
+    glyphs: HashMap<u16, (u64, Glyph)>,
+}
+
+impl Cache {
+    fn get(&mut self, font: &Font<'_>, decoder: &mut ModelDecoder, gid: u16) -> Result<&Glyph, Error> {
+        self.clock += 1;
+        if !self.glyphs.contains_key(&gid) {
+            let glyph = font.glyph_with(decoder, gid)?;
+            let bytes = glyph.memory();
+            while self.bytes + bytes > self.limit && !self.glyphs.is_empty() {
+                self.evict();
+            }
+            self.bytes += bytes;
+            self.glyphs.insert(gid, (self.clock, glyph));
+        }
+        let (used, glyph) = self.glyphs.get_mut(&gid).ok_or(Error::MissingGlyph(gid))?;
+        *used = self.clock;
+        Ok(glyph)
+    }
+
+    fn evict(&mut self) {
+        let oldest = self.glyphs.iter().min_by_key(|(_, (used, _))| *used).map(|(gid, _)| *gid);
+        if let Some((_, glyph)) = oldest.and_then(|gid| self.glyphs.remove(&gid)) {
+            self.bytes -= glyph.memory();
+        }
+    }
+}
