@@ -2,6 +2,7 @@
 
 pub mod distance;
 pub mod start;
+pub mod strip;
 pub mod teach;
 pub mod teacher;
 pub mod train;
