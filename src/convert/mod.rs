@@ -1,5 +1,6 @@
 //! From a hinted font to a neural one.
 
+pub mod assemble;
 pub mod distance;
 pub mod start;
 pub mod strip;
