@@ -1,7 +1,9 @@
 //! From a hinted font to a neural one.
 
+pub mod assemble;
 pub mod distance;
 pub mod start;
+pub mod strip;
 pub mod teach;
 pub mod teacher;
 pub mod train;
