@@ -129,7 +129,6 @@ fn main() {
         dump(b.placement, &b.pixels);
         println!("{:?}", drafts[0].hinted[1].chunks(drafts[0].knots[1].len()).nth(s - 8));
     }
-    let device = burn::tensor::Device::flex();
     let t1 = std::time::Instant::now();
     let jobs = arg("jobs", 2.0) as usize;
     {
@@ -140,7 +139,8 @@ fn main() {
                 s.spawn(|| {
                     loop {
                         let Some((l, d)) = work.lock().unwrap().pop() else { break };
-                        train::train(l, d, scale, sched, &device).unwrap();
+                        train::train(&l.iter().collect::<Vec<_>>(), d, scale, sched, Default::default())
+                            .unwrap();
                     }
                 });
             }
@@ -190,7 +190,32 @@ fn main() {
         p += entropy(q.patterns.iter().map(|v| *v as i32));
         e += entropy(q.embedding.iter().map(|v| *v as i32));
     }
-    warp_study(&drafts);
+    if arg("study", 0.0) > 0.0 {
+        warp_study(&drafts);
+    }
+    {
+        use nfr::table;
+        let models: Vec<_> = drafts
+            .iter()
+            .enumerate()
+            .map(|(i, d)| table::GlyphModel { gid: i as u16, weights: d.quantise() })
+            .collect();
+        let plain: usize = models.iter().map(|m| table::codec::encode(&m.weights, scale).len()).sum();
+        let h = table::Header { first_ppem: 8, last_ppem: 64, ..Default::default() };
+        let (t, lens) = table::write(&h, &models, scale).unwrap();
+        let tt = table::Table::parse(&t).unwrap();
+        let mut dec = table::ModelDecoder::new(&tt).unwrap();
+        for m in &models {
+            assert_eq!(dec.decode(&tt, m.gid, scale).unwrap(), m.weights);
+        }
+        println!(
+            "table {} bytes = {:.0} per glyph; models {:.0}; plain {}",
+            t.len(),
+            t.len() as f64 / models.len() as f64,
+            lens.iter().sum::<usize>() as f64 / models.len() as f64,
+            plain / models.len()
+        );
+    }
     println!(
         "bytes (order-0, per glyph) field {:.0} warp {:.0} ({:.1} knots) patterns {:.0} embedding {:.0} total {:.0}",
         z(f),

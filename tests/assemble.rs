@@ -6,7 +6,8 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use freetype::face::LoadFlag;
-use nfr::convert::assemble::{NFRT, assemble, hint_bytes};
+use nfr::convert::assemble::{assemble, hint_bytes};
+use nfr::table::TAG as NFRT;
 use read_fonts::tables::compute_checksum;
 use read_fonts::tables::glyf::Glyph;
 use read_fonts::tables::head::Flags;

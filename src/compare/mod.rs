@@ -1,1 +1,3 @@
-//! compare
+//! Comparing renders.
+
+pub mod metrics;

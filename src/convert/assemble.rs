@@ -10,9 +10,7 @@ use write_fonts::{FontBuilder, dump_table};
 
 use super::strip::{Stripped, strip};
 use crate::error::Error;
-
-/// The table that carries the models.
-pub const NFRT: Tag = Tag::new(b"Nfrt");
+use crate::table;
 
 const CVT: Tag = Tag::new(b"cvt ");
 const FPGM: Tag = Tag::new(b"fpgm");
@@ -82,6 +80,16 @@ pub fn hint_bytes(font: &FontRef) -> Result<HintBytes, Error> {
     })
 }
 
+/// The hash that ties models to the outlines of the font that [`assemble`] writes.
+///
+/// # Errors
+///
+/// As for [`assemble`].
+pub fn outline_hash(font: &FontRef) -> Result<u64, Error> {
+    let units_per_em = font.head().map_err(|e| unreadable(HEAD, e))?.units_per_em();
+    Ok(table::outline_hash(units_per_em, &strip_font(font)?.glyf))
+}
+
 /// Writes a font with the outlines and everything else of `font`, no hint programs, and `nfrt` as its
 /// `Nfrt` table.
 ///
@@ -101,7 +109,7 @@ pub fn assemble(font: &FontRef, nfrt: &[u8]) -> Result<Vec<u8>, Error> {
     for record in font.table_directory().table_records() {
         let tag = record.tag();
         if !DROPPED.contains(&tag) {
-            let data = table(font, tag)?;
+            let data = table_bytes(font, tag)?;
             size += data.len();
             builder.add_raw(tag, data);
         }
@@ -116,11 +124,11 @@ pub fn assemble(font: &FontRef, nfrt: &[u8]) -> Result<Vec<u8>, Error> {
     builder.add_raw(GASP, gasp()?);
     builder.add_raw(LOCA, stripped.loca);
     builder.add_raw(GLYF, stripped.glyf);
-    builder.add_raw(NFRT, nfrt);
+    builder.add_raw(table::TAG, nfrt);
     Ok(builder.build())
 }
 
-fn table<'a>(font: &FontRef<'a>, tag: Tag) -> Result<&'a [u8], Error> {
+fn table_bytes<'a>(font: &FontRef<'a>, tag: Tag) -> Result<&'a [u8], Error> {
     let data = font.table_data(tag).ok_or_else(|| {
         Error::Malformed(format!("table '{tag}' is missing or reaches beyond the file; repair the font"))
     })?;
@@ -144,7 +152,7 @@ fn strip_font(font: &FontRef) -> Result<Stripped, Error> {
         }
     };
     let num_glyphs = font.maxp().map_err(|e| unreadable(MAXP, e))?.num_glyphs();
-    strip(table(font, GLYF)?, table(font, LOCA)?, long_offsets, num_glyphs)
+    strip(table_bytes(font, GLYF)?, table_bytes(font, LOCA)?, long_offsets, num_glyphs)
 }
 
 fn unreadable(tag: Tag, error: impl std::fmt::Display) -> Error {
@@ -153,7 +161,7 @@ fn unreadable(tag: Tag, error: impl std::fmt::Display) -> Error {
 
 /// `head` with what it says of programs cleared. Its bytes are patched, not parsed, so that reserved bits stay.
 fn head(font: &FontRef, long_offsets: bool) -> Result<Vec<u8>, Error> {
-    let mut head = table(font, HEAD)?.to_vec();
+    let mut head = table_bytes(font, HEAD)?.to_vec();
     if head.len() < HEAD_BYTES {
         return Err(unreadable(HEAD, format!("{} bytes instead of {HEAD_BYTES}", head.len())));
     }

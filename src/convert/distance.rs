@@ -2,7 +2,7 @@
 
 /// Distance from `point` to the nearest of the straight `segments`, positive inside (nonzero winding).
 /// Everything in em.
-pub fn signed_distance(segments: &[[[f32; 2]; 2]], point: [f32; 2]) -> f32 {
+pub(super) fn signed_distance(segments: &[[[f32; 2]; 2]], point: [f32; 2]) -> f32 {
     let [x, y] = point;
     let mut nearest = f32::INFINITY;
     let mut winding = 0;

@@ -12,6 +12,8 @@ pub struct Lesson {
     pub gid: u16,
     /// The plain outline in em.
     pub outline: Outline,
+    /// What the glyph's hint program did wrong, if anything.
+    pub complaint: Option<String>,
     /// The hinted glyph at each size, in the order of the sizes.
     pub sizes: Vec<HintedGlyph>,
 }
@@ -34,10 +36,12 @@ pub struct HintedGlyph {
 /// As the teacher's, and `Unsupported` if the hint programs change the number of points.
 pub fn lesson(teacher: &Teacher<'_>, sizes: &[TeacherAt<'_, '_>], gid: u16) -> Result<Lesson, Error> {
     let outline = teacher.unhinted_em(gid)?;
+    let mut complaint = None;
     let sizes = sizes
         .iter()
         .map(|at| {
-            let hinted = at.hinted(gid)?;
+            let (hinted, wrong) = at.hinted_or_complaint(gid)?;
+            complaint = complaint.take().or(wrong);
             let bitmap = hinted.rasterize();
             if hinted.points.len() != outline.points.len() {
                 return Err(Error::Unsupported(format!(
@@ -48,5 +52,5 @@ pub fn lesson(teacher: &Teacher<'_>, sizes: &[TeacherAt<'_, '_>], gid: u16) -> R
             Ok(HintedGlyph { ppem: at.ppem(), points: hinted.points, bitmap })
         })
         .collect::<Result<_, _>>()?;
-    Ok(Lesson { gid, outline, sizes })
+    Ok(Lesson { gid, outline, complaint, sizes })
 }

@@ -104,7 +104,6 @@ impl<'a> Teacher<'a> {
     pub fn unhinted(&self, gid: u16, ppem: f32) -> Result<Outline, Error> {
         check_ppem(ppem)?;
         self.draw(gid, DrawSettings::unhinted(Size::new(ppem), LocationRef::default()), ppem)
-            .map(|(outline, _)| outline)
     }
 
     /// The plain outline in em.
@@ -115,18 +114,18 @@ impl<'a> Teacher<'a> {
     pub fn unhinted_em(&self, gid: u16) -> Result<Outline, Error> {
         // Unscaled font units are exact; a scaled outline is rounded to 26.6 pixels.
         let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
-        let (mut outline, _) = self.draw(gid, settings, f32::from(self.units_per_em))?;
+        let mut outline = self.draw(gid, settings, f32::from(self.units_per_em))?;
         outline.scale(1.0 / f32::from(self.units_per_em));
         Ok(outline)
     }
 
-    fn draw(&self, gid: u16, settings: DrawSettings<'_>, ppem: f32) -> Result<(Outline, Option<f32>), Error> {
+    fn draw(&self, gid: u16, settings: DrawSettings<'_>, ppem: f32) -> Result<Outline, Error> {
         let glyph = self.outlines.get(GlyphId::from(gid)).ok_or(Error::MissingGlyph(gid))?;
         let mut outline = Outline::default();
-        let metrics = glyph
+        glyph
             .draw(settings, &mut outline)
             .map_err(|e| Error::Malformed(format!("glyph {gid} cannot be drawn at {ppem} ppem ({e})")))?;
-        Ok((outline, metrics.advance_width))
+        Ok(outline)
     }
 }
 
@@ -147,10 +146,27 @@ impl TeacherAt<'_, '_> {
     ///
     /// # Errors
     ///
-    /// `MissingGlyph` for a glyph that the font does not have, `Malformed` if its program fails.
+    /// `MissingGlyph` for a glyph that the font does not have, `Malformed` if it cannot be drawn.
     pub fn hinted(&self, gid: u16) -> Result<Outline, Error> {
-        let settings = DrawSettings::hinted(&self.hinting, false);
-        self.teacher.draw(gid, settings, f32::from(self.ppem)).map(|(outline, _)| outline)
+        self.hinted_or_complaint(gid).map(|(outline, _)| outline)
+    }
+
+    /// The hinted outline, and what went wrong in the glyph's program if anything did. Interpreters carry on
+    /// with what such a program has done so far, and so does this one.
+    ///
+    /// # Errors
+    ///
+    /// As `hinted`.
+    pub fn hinted_or_complaint(&self, gid: u16) -> Result<(Outline, Option<String>), Error> {
+        let ppem = f32::from(self.ppem);
+        match self.teacher.draw(gid, DrawSettings::hinted(&self.hinting, true), ppem) {
+            Ok(outline) => Ok((outline, None)),
+            Err(error @ Error::MissingGlyph(_)) => Err(error),
+            Err(error) => {
+                let outline = self.teacher.draw(gid, DrawSettings::hinted(&self.hinting, false), ppem)?;
+                Ok((outline, Some(format!("{error}; other renderers ignore that, and so does the model"))))
+            }
+        }
     }
 }
 

@@ -3,11 +3,11 @@
 
 /// Knots of one axis and where hinting puts them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Warp {
+pub(super) struct Warp {
     /// Ascending positions in em.
-    pub knots: Vec<f32>,
+    pub(super) knots: Vec<f32>,
     /// For each size, the hinted position of each knot in pixels.
-    pub hinted: Vec<Vec<f32>>,
+    pub(super) hinted: Vec<Vec<f32>>,
 }
 
 /// Levels closer than this to a knot (em) are no candidates: they would make the fit ill-conditioned.
@@ -19,7 +19,7 @@ const RIDGE: f64 = 1e-4;
 
 /// Fits a warp of at most `max_knots` knots. `plain` holds a coordinate of each outline point in em,
 /// `hinted` the same coordinate in pixels for each size, `ppem` the sizes.
-pub fn fit(plain: &[f32], hinted: &[Vec<f32>], ppem: &[u16], max_knots: usize) -> Warp {
+pub(super) fn fit(plain: &[f32], hinted: &[Vec<f32>], ppem: &[u16], max_knots: usize) -> Warp {
     let mut levels = plain.to_vec();
     levels.sort_by(f32::total_cmp);
     levels.dedup();

@@ -5,6 +5,8 @@ mod font;
 pub mod outline;
 mod rasterizer;
 
+#[cfg(feature = "convert")]
+pub(crate) use font::open;
 pub use font::{Font, Glyph};
 pub use rasterizer::Rasterizer;
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+#[cfg(feature = "fallback")]
 use super::font::buffer_for;
 use super::{Bitmap, Font, Glyph, Placement};
 use crate::error::Error;

@@ -146,7 +146,7 @@ struct Pixel {
 impl Group {
     /// The tensors of group `group` of a chunk's lessons.
     pub(super) fn new(
-        lessons: &[Lesson],
+        lessons: &[&Lesson],
         drafts: &[Draft],
         scale: Scale,
         extent: Extent,

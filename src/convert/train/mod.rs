@@ -43,6 +43,28 @@ impl Default for Schedule {
     }
 }
 
+/// burn's backends for the CPU.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Backend {
+    /// burn-flex, the faster one here.
+    #[default]
+    Flex,
+    /// burn-ndarray, which burn 0.22 deprecates.
+    #[cfg(feature = "ndarray")]
+    Ndarray,
+}
+
+impl Backend {
+    fn device(self) -> Device {
+        match self {
+            Self::Flex => Device::flex(),
+            #[cfg(feature = "ndarray")]
+            #[allow(deprecated)]
+            Self::Ndarray => Device::ndarray(),
+        }
+    }
+}
+
 /// What is left of the learning rates at the end.
 const FINAL_RATE: f64 = 0.02;
 /// Adam's epsilon. burn's default of 1e-5 is as large as our gradients.
@@ -65,14 +87,14 @@ impl<const D: usize> Moments<D> {
 ///
 /// `Malformed` if a first guess contradicts itself.
 pub fn train(
-    lessons: &[Lesson],
+    lessons: &[&Lesson],
     drafts: &mut [Draft],
     scale: Scale,
     schedule: Schedule,
-    device: &Device,
+    backend: Backend,
 ) -> Result<(), Error> {
     let extent = Extent::of(drafts, scale.sizes());
-    let device = device.clone().autodiff();
+    let device = backend.device().autodiff();
     let groups = (0..GROUPS)
         .map(|k| Group::new(lessons, drafts, scale, extent, k, &device))
         .collect::<Result<Vec<_>, _>>()?;

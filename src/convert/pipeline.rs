@@ -1,0 +1,268 @@
+//! The whole conversion.
+
+use std::ops::RangeInclusive;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use read_fonts::FontRef;
+
+use super::assemble::{assemble, outline_hash};
+use super::start::{Capacity, Draft};
+use super::teach::{Lesson, lesson};
+use super::teacher::{Teacher, TeacherAt};
+use super::train::{Backend, Schedule, train};
+use crate::compare::metrics::Sums;
+use crate::error::Error;
+use crate::model::Target;
+use crate::model::gridfit::{GridFit, Scale, Scratch, Weights};
+use crate::render::Bitmap;
+use crate::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM};
+
+/// Glyphs that are trained together. The result depends on it in the last digits, so that it is fixed.
+const CHUNK: usize = 8;
+
+/// What a conversion is asked to do.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The font's index in a collection file; 0 for a plain font.
+    pub index: u32,
+    /// The glyphs to convert, in ascending order.
+    pub gids: Vec<u16>,
+    /// The sizes to train on, in pixels per em.
+    pub ppem: RangeInclusive<u16>,
+    /// What the teacher hints for.
+    pub target: Target,
+    /// Seeds whatever the training draws at random.
+    pub seed: u64,
+    /// Threads. The result does not depend on it.
+    pub jobs: usize,
+    /// burn's backend.
+    pub backend: Backend,
+    /// How large a glyph's model may become.
+    pub capacity: Capacity,
+    /// How long and how fast to train.
+    pub schedule: Schedule,
+}
+
+impl Default for Options {
+    /// Sizes 8–64 for smooth rendering, one thread, no glyphs.
+    fn default() -> Self {
+        Self {
+            index: 0,
+            gids: Vec::new(),
+            ppem: 8..=64,
+            target: Target::default(),
+            seed: 1,
+            jobs: 1,
+            backend: Backend::default(),
+            capacity: Capacity::default(),
+            schedule: Schedule::default(),
+        }
+    }
+}
+
+/// What a conversion tells while it runs; called from several threads.
+pub trait Progress: Sync {
+    /// One glyph is ready: its error over all sizes (mae, 0..1).
+    fn glyph_done(&self, gid: u16, mae: f64);
+
+    /// Something in the font is not as it should be, and what was done about it.
+    fn warn(&self, message: &str) {
+        let _ = message;
+    }
+}
+
+/// One converted glyph, for the report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GlyphReport {
+    /// The glyph.
+    pub gid: u16,
+    /// Bytes of its model in the table.
+    pub bytes: usize,
+    /// Mean absolute error against the teacher over all sizes, 0..1.
+    pub mae: f64,
+    /// Share of pixels off by more than 16/255.
+    pub bad16: f64,
+}
+
+/// A finished conversion.
+#[derive(Debug, Clone)]
+pub struct Conversion {
+    /// The new font file.
+    pub font: Vec<u8>,
+    /// A line for each glyph, in order.
+    pub glyphs: Vec<GlyphReport>,
+    /// The sums over all glyphs and sizes.
+    pub sums: Sums,
+    /// The length of the `Nfrt` table.
+    pub table_bytes: usize,
+}
+
+/// Where a thread leaves a chunk's result.
+type Slot = Mutex<Option<Result<Vec<Trained>, Error>>>;
+
+/// A trained glyph with what it differs from its teacher by.
+struct Trained {
+    gid: u16,
+    weights: Weights,
+    sums: Sums,
+}
+
+/// Converts a font: trains a model for each glyph and writes a font that carries them instead of hints.
+///
+/// # Errors
+///
+/// `Malformed` or `Unsupported` for a font that cannot teach, `MissingGlyph` for a glyph that it does not
+/// have, `InvalidParameter` for options that make no sense.
+pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Result<Conversion, Error> {
+    check(options)?;
+    let font = crate::render::open(input, options.index)?;
+    if font.table_data(table::TAG).is_some() {
+        return Err(Error::Unsupported(
+            "the font already carries an 'Nfrt' table and has no hints left; convert the original font"
+                .into(),
+        ));
+    }
+    let teacher = Teacher::new(&font, options.target)?;
+    let sizes = options.ppem.clone().map(|s| teacher.at(s)).collect::<Result<Vec<_>, _>>()?;
+    let scale = Scale {
+        units_per_em: teacher.units_per_em(),
+        first_ppem: *options.ppem.start(),
+        last_ppem: *options.ppem.end(),
+    };
+    let trained = train_all(&teacher, &sizes, scale, options, progress)?;
+    let mut sums = Sums::default();
+    trained.iter().for_each(|t| sums.merge(&t.sums));
+    let figures: Vec<_> = trained.iter().map(|t| t.sums.figures()).collect();
+    let models: Vec<GlyphModel> =
+        trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
+    let (table, lengths) = table::write(&header(&font, options)?, &models, scale)?;
+    let glyphs = models.iter().zip(lengths).zip(figures).map(|((model, bytes), figures)| GlyphReport {
+        gid: model.gid,
+        bytes,
+        mae: figures.mae,
+        bad16: figures.bad16,
+    });
+    Ok(Conversion {
+        font: assemble(&font, &table)?,
+        glyphs: glyphs.collect(),
+        sums,
+        table_bytes: table.len(),
+    })
+}
+
+fn check(options: &Options) -> Result<(), Error> {
+    let wrong = |what: String| Err(Error::InvalidParameter(what));
+    if options.gids.is_empty() {
+        return wrong("no glyphs are selected".into());
+    }
+    if !options.gids.is_sorted_by(|a, b| a < b) {
+        return wrong("the glyphs are not in ascending order".into());
+    }
+    let (first, last) = (*options.ppem.start(), *options.ppem.end());
+    if first == 0 || first > last || last > MAX_TRAINED_PPEM {
+        return wrong(format!("sizes {first}–{last} ppem; use a range within 1–{MAX_TRAINED_PPEM}"));
+    }
+    Ok(())
+}
+
+fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
+    Ok(Header {
+        target: options.target,
+        first_ppem: *options.ppem.start(),
+        last_ppem: *options.ppem.end(),
+        outline_hash: outline_hash(font)?,
+        seed: options.seed,
+        steps: options.schedule.steps as u16,
+        knots: options.capacity.knots as u8,
+        rank: options.capacity.rank as u8,
+        cell: (options.capacity.cell * 10_000.0).round() as u16,
+    })
+}
+
+/// Trains chunk after chunk, on `options.jobs` threads. The first failure stops them all.
+fn train_all(
+    teacher: &Teacher<'_>,
+    sizes: &[TeacherAt<'_, '_>],
+    scale: Scale,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Vec<Trained>, Error> {
+    let chunks: Vec<&[u16]> = options.gids.chunks(CHUNK).collect();
+    let done: Vec<Slot> = chunks.iter().map(|_| Mutex::default()).collect();
+    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+    std::thread::scope(|scope| {
+        for _ in 0..options.jobs.clamp(1, chunks.len()) {
+            scope.spawn(|| {
+                while !failed.load(Ordering::Relaxed) {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(gids) = chunks.get(k) else { break };
+                    let result = train_chunk(teacher, sizes, scale, options, gids, progress);
+                    failed.fetch_or(result.is_err(), Ordering::Relaxed);
+                    if let Ok(mut slot) = done[k].lock() {
+                        *slot = Some(result);
+                    }
+                }
+            });
+        }
+    });
+    let mut trained = Vec::with_capacity(options.gids.len());
+    let mut results: Vec<_> = done.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect();
+    // Of several failures the first glyph's is told, whichever thread met it.
+    if let Some(k) = results.iter().position(Result::is_err) {
+        results.swap(0, k);
+    }
+    for result in results {
+        trained.extend(result?);
+    }
+    Ok(trained)
+}
+
+fn train_chunk(
+    teacher: &Teacher<'_>,
+    sizes: &[TeacherAt<'_, '_>],
+    scale: Scale,
+    options: &Options,
+    gids: &[u16],
+    progress: &dyn Progress,
+) -> Result<Vec<Trained>, Error> {
+    let lessons = gids.iter().map(|gid| lesson(teacher, sizes, *gid)).collect::<Result<Vec<_>, _>>()?;
+    for complaint in lessons.iter().filter_map(|l| l.complaint.as_deref()) {
+        progress.warn(complaint);
+    }
+    let (inked, mut drafts): (Vec<&Lesson>, Vec<Draft>) = lessons
+        .iter()
+        .filter(|lesson| !lesson.outline.points.is_empty())
+        .map(|lesson| {
+            (lesson, Draft::from_lesson(lesson, scale, options.target, options.capacity, options.seed))
+        })
+        .unzip();
+    if !inked.is_empty() {
+        train(&inked, &mut drafts, scale, options.schedule, options.backend)?;
+    }
+    let mut drafts = drafts.into_iter();
+    lessons
+        .iter()
+        .map(|lesson| {
+            let blank = lesson.outline.points.is_empty();
+            let weights = if blank { None } else { drafts.next() }.unwrap_or_default().quantise();
+            let sums = judge(lesson, &weights, scale)?;
+            progress.glyph_done(lesson.gid, sums.figures().mae);
+            Ok(Trained { gid: lesson.gid, weights, sums })
+        })
+        .collect()
+}
+
+/// Draws what will be stored and compares it with the lesson.
+fn judge(lesson: &Lesson, weights: &Weights, scale: Scale) -> Result<Sums, Error> {
+    let model = GridFit::new(weights, scale)?;
+    let (mut sums, mut scratch) = (Sums::default(), Scratch::default());
+    for hinted in &lesson.sizes {
+        let ppem = f32::from(hinted.ppem);
+        let placement = model.placement(ppem)?;
+        let mut pixels = vec![0; placement.area()];
+        model.draw(ppem, placement, &mut scratch, &mut pixels);
+        sums.add(&hinted.bitmap, &Bitmap { placement, pixels });
+    }
+    Ok(sums)
+}
