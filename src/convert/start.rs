@@ -1,11 +1,12 @@
 //! A glyph's first guess: the warp from its points, the field from its outline.
 
+use crate::convert::deform;
 use crate::convert::distance::signed_distance;
-use crate::convert::teach::Lesson;
+use crate::convert::teach::{HintedGlyph, Lesson};
 use crate::convert::warp::{self, Warp};
 use crate::model::Target;
 use crate::model::gridfit::{
-    AxisWarp, DEFORM_NODES, FIELD_LIMIT, GridAxis, PADDING, Scale, WARP_STEPS, Weights,
+    AxisWarp, DEFORM_NODES, FIELD_LIMIT, GridAxis, PADDING, Scale, WARP_STEPS, Weights, unwarp_point,
 };
 
 /// How large a glyph's model may become.
@@ -15,13 +16,20 @@ pub struct Capacity {
     pub cell: f32,
     /// Knots of each warped axis, at most.
     pub knots: usize,
-    /// Deformation patterns.
+    /// Knots are added until they leave less than this of the points' moves (mean square, pixels²).
+    pub knot_gain: f64,
+    /// Deformation patterns, at most.
     pub rank: usize,
+    /// Deformation patterns, at least; those that the points do not call for are left to the training.
+    pub least_rank: usize,
+    /// Patterns are added until they leave less than this of the points' moves at every size (mean square,
+    /// pixels²).
+    pub pattern_gain: f64,
 }
 
 impl Default for Capacity {
     fn default() -> Self {
-        Self { cell: 0.034, knots: 12, rank: 4 }
+        Self { cell: 0.034, knots: 12, knot_gain: 2e-5, rank: 8, least_rank: 2, pattern_gain: 0.01 }
     }
 }
 
@@ -75,17 +83,48 @@ impl Draft {
             bounds,
             cells: grid.map(|g| g.cells),
             field: first_field(lesson, grid),
-            rank: capacity.rank,
-            patterns: noise(capacity.rank * DEFORM_NODES * DEFORM_NODES, seed ^ u64::from(lesson.gid)),
-            embedding: vec![0.0; capacity.rank * lesson.sizes.len()],
             ..Self::default()
         };
         for axis in if target == Target::Smooth { 1..2 } else { 0..2 } {
-            let fitted = first_warp(lesson, axis, capacity.knots);
+            let fitted = first_warp(lesson, axis, capacity);
             draft.knots[axis] = fitted.knots.iter().map(|k| (k * units).round() as i16).collect();
             draft.hinted[axis] = fitted.hinted.concat();
         }
+        let seed = seed ^ u64::from(lesson.gid);
+        draft.first_deformation(lesson, grid, units, capacity, seed);
         draft
+    }
+
+    /// What the warp in y leaves of the points' moves, and some noise for the patterns that find nothing.
+    fn first_deformation(
+        &mut self,
+        lesson: &Lesson,
+        grid: [GridAxis; 2],
+        units: f32,
+        capacity: Capacity,
+        seed: u64,
+    ) {
+        let knots: Vec<f32> = self.knots[1].iter().map(|k| f32::from(*k) / units).collect();
+        let points = &lesson.outline.points;
+        let left = |(size, hinted): (usize, &HintedGlyph)| -> Vec<f64> {
+            let ppem = f32::from(hinted.ppem);
+            let at_knots = &self.hinted[1][size * knots.len()..(size + 1) * knots.len()];
+            let unwarped = |p: &[f32; 2]| unwarp_point(&knots, at_knots, ppem, p[1]);
+            hinted.points.iter().zip(points).map(|(h, p)| f64::from((p[1] - unwarped(h)) * ppem)).collect()
+        };
+        let left: Vec<Vec<f64>> = lesson.sizes.iter().enumerate().map(left).collect();
+        let found = deform::fit(points, left, grid, capacity.rank, capacity.pattern_gain);
+        let nodes = DEFORM_NODES * DEFORM_NODES;
+        self.rank = found.patterns.len().max(capacity.least_rank);
+        self.patterns = found.patterns.concat();
+        let noise = noise(self.rank * nodes, seed);
+        self.patterns.extend_from_slice(&noise[self.patterns.len()..]);
+        let strength = |size: usize, r: usize| found.strengths.get(r).map_or(0.0, |s| s[size]);
+        let rank = self.rank;
+        self.embedding = (0..lesson.sizes.len())
+            .flat_map(|size| (0..rank).map(move |r| (size, r)))
+            .map(|(s, r)| strength(s, r))
+            .collect();
     }
 
     /// Rounds to what is stored.
@@ -111,12 +150,12 @@ impl Draft {
     }
 }
 
-fn first_warp(lesson: &Lesson, axis: usize, knots: usize) -> Warp {
+fn first_warp(lesson: &Lesson, axis: usize, capacity: Capacity) -> Warp {
     let plain: Vec<f32> = lesson.outline.points.iter().map(|p| p[axis]).collect();
     let hinted: Vec<Vec<f32>> =
         lesson.sizes.iter().map(|s| s.points.iter().map(|p| p[axis]).collect()).collect();
     let ppem: Vec<u16> = lesson.sizes.iter().map(|s| s.ppem).collect();
-    warp::fit(&plain, &hinted, &ppem, knots)
+    warp::fit(&plain, &hinted, &ppem, capacity.knots, capacity.knot_gain)
 }
 
 /// Spline coefficients from the signed distance at their centres.

@@ -12,14 +12,19 @@ pub(super) struct Warp {
 
 /// Levels closer than this to a knot (em) are no candidates: they would make the fit ill-conditioned.
 const MIN_SPACING: f32 = 0.006;
-/// No more knots are added once the mean squared residual falls below this (pixels²).
-const GOOD_ENOUGH: f64 = 2e-5;
 /// Pulls each knot's displacement towards its neighbours' where the points do not determine it.
 const RIDGE: f64 = 1e-4;
 
 /// Fits a warp of at most `max_knots` knots. `plain` holds a coordinate of each outline point in em,
-/// `hinted` the same coordinate in pixels for each size, `ppem` the sizes.
-pub(super) fn fit(plain: &[f32], hinted: &[Vec<f32>], ppem: &[u16], max_knots: usize) -> Warp {
+/// `hinted` the same coordinate in pixels for each size, `ppem` the sizes. Stops once the mean squared residual
+/// falls below `good_enough` (pixels²).
+pub(super) fn fit(
+    plain: &[f32],
+    hinted: &[Vec<f32>],
+    ppem: &[u16],
+    max_knots: usize,
+    good_enough: f64,
+) -> Warp {
     let mut levels = plain.to_vec();
     levels.sort_by(f32::total_cmp);
     levels.dedup();
@@ -36,7 +41,7 @@ pub(super) fn fit(plain: &[f32], hinted: &[Vec<f32>], ppem: &[u16], max_knots: u
         knots.push(high);
     }
     let mut best = solve(&knots, plain, &moves);
-    while knots.len() < max_knots && best.1 > GOOD_ENOUGH {
+    while knots.len() < max_knots && best.1 > good_enough {
         let candidate = levels
             .iter()
             .filter(|v| knots.iter().all(|k| (*k - **v).abs() > MIN_SPACING))

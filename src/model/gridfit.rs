@@ -10,7 +10,7 @@ use crate::render::Placement;
 /// Hinted knot positions are stored in this fraction of a pixel.
 pub const WARP_STEPS: f32 = 32.0;
 /// Field coefficients are stored in this fraction of an em.
-pub const FIELD_STEPS: f32 = 768.0;
+pub const FIELD_STEPS: f32 = 1536.0;
 /// Deformation patterns are stored in this fraction of one.
 pub const PATTERN_STEPS: f32 = 16.0;
 /// The size embedding is stored in this fraction of a pixel.
@@ -89,10 +89,10 @@ impl Scale {
 /// How many samples a pixel has along each axis: small sizes are supersampled.
 pub fn samples_per_pixel(ppem: f32) -> usize {
     match ppem {
-        s if s < 11.0 => 4,
-        s if s < 16.0 => 3,
-        s if s < 32.0 => 2,
-        _ => 1,
+        s if s < 11.0 => 6,
+        s if s < 16.0 => 4,
+        s if s < 24.0 => 3,
+        _ => 2,
     }
 }
 
@@ -137,6 +137,15 @@ impl GridAxis {
         let u = ((q - self.origin) * self.cells_per_em).clamp(0.0, self.cells as f32);
         let cell = (u as usize).min(self.cells - 1);
         (cell, u - cell as f32)
+    }
+
+    /// The deformation node at or below `q` (em), and how far `q` lies towards the next, 0..1.
+    #[inline]
+    pub fn locate_node(&self, q: f32) -> (usize, f32) {
+        let share = (q - self.origin) * self.cells_per_em / self.cells as f32;
+        let u = (share * (DEFORM_NODES - 1) as f32).clamp(0.0, (DEFORM_NODES - 1) as f32);
+        let node = (u as usize).min(DEFORM_NODES - 2);
+        (node, u - node as f32)
     }
 }
 
@@ -376,20 +385,12 @@ impl GridFit {
             let g = [row[cell], row[cell + 1], row[cell + 2]];
             [w[0] * g[0] + w[1] * g[1] + w[2] * g[2], (d[0] * g[0] + d[1] * g[1] + d[2] * g[2]) * scale]
         }));
-        let (node, t) = self.locate_node(0, x);
+        let (node, t) = self.grid[0].locate_node(x);
         let mut nodes = [0.0; DEFORM_NODES];
         for (out, row) in nodes.iter_mut().zip(deform.chunks_exact(DEFORM_NODES)) {
             *out = row[node] + (row[node + 1] - row[node]) * t;
         }
         nodes
-    }
-
-    fn locate_node(&self, axis: usize, q: f32) -> (usize, f32) {
-        let grid = self.grid[axis];
-        let share = (q - grid.origin) * grid.cells_per_em / grid.cells as f32;
-        let u = (share * (DEFORM_NODES - 1) as f32).clamp(0.0, (DEFORM_NODES - 1) as f32);
-        let node = (u as usize).min(DEFORM_NODES - 2);
-        (node, u - node as f32)
     }
 
     /// Coverage of one sample of a contracted column.
@@ -401,7 +402,7 @@ impl GridFit {
         nodes: &[f32; DEFORM_NODES],
         column: &[[f32; 2]],
     ) -> f32 {
-        let (node, t) = self.locate_node(1, y);
+        let (node, t) = self.grid[1].locate_node(y);
         let y = y + (nodes[node] + (nodes[node + 1] - nodes[node]) * t);
         let (cell, t) = self.grid[1].locate(y);
         let (w, d) = (spline(t), spline_slope(t));
@@ -415,7 +416,7 @@ impl GridFit {
 
 /// Inverse of the piecewise-linear map from `knots` (em) to `hinted` (pixels); beyond the ends the map has
 /// the plain scale.
-fn unwarp_point(knots: &[f32], hinted: &[f32], ppem: f32, at: f32) -> f32 {
+pub(crate) fn unwarp_point(knots: &[f32], hinted: &[f32], ppem: f32, at: f32) -> f32 {
     let (Some(&first), Some(&last)) = (hinted.first(), hinted.last()) else { return at / ppem };
     if at <= first {
         return knots[0] + (at - first) / ppem;

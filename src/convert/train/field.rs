@@ -37,7 +37,7 @@ impl Parameters {
         let mut field = vec![0.0; extent.glyphs * nx * ny];
         let mut hinted = extent.knots.map(|k| vec![0.0; (extent.glyphs * extent.sizes * k).max(1)]);
         let mut patterns = vec![0.0; extent.glyphs * nodes * extent.rank * nodes];
-        let mut embedding = Vec::with_capacity(extent.glyphs * extent.sizes * extent.rank);
+        let mut embedding = vec![0.0; extent.glyphs * extent.sizes * extent.rank];
         for (g, draft) in drafts.iter().enumerate() {
             let stride = draft.cells[0] + 2;
             for (k, v) in draft.field.iter().enumerate() {
@@ -53,7 +53,9 @@ impl Parameters {
                 let (r, y, x) = (k / (nodes * nodes), k / nodes % nodes, k % nodes);
                 patterns[((g * nodes + x) * extent.rank + r) * nodes + y] = *v;
             }
-            embedding.extend_from_slice(&draft.embedding);
+            for (k, v) in draft.embedding.iter().enumerate() {
+                embedding[(g * extent.sizes + k / draft.rank) * extent.rank + k % draft.rank] = *v;
+            }
         }
         let hinted = hinted.map(|h| {
             let count = h.len();
@@ -89,8 +91,10 @@ impl Parameters {
                 let (r, y, x) = (k / (nodes * nodes), k / nodes % nodes, k % nodes);
                 *v = patterns[((g * nodes + x) * extent.rank + r) * nodes + y];
             }
-            let own = draft.embedding.len();
-            draft.embedding.copy_from_slice(&embedding[g * own..(g + 1) * own]);
+            let rank = draft.rank;
+            for (k, v) in draft.embedding.iter_mut().enumerate() {
+                *v = embedding[(g * extent.sizes + k / rank) * extent.rank + k % rank];
+            }
         }
     }
 
