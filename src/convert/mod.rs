@@ -3,7 +3,10 @@
 
 pub mod assemble;
 mod distance;
+pub mod open;
 pub mod pipeline;
+pub mod ppem;
+pub mod select;
 pub mod start;
 pub mod strip;
 pub mod teach;
