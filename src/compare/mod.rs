@@ -1,3 +1,5 @@
-//! Comparing renders.
+//! How far a neural font is from the hinted one that it was made from.
 
+pub mod diff;
 pub mod metrics;
+pub mod source;
