@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::Scratch;
 use crate::convert::teacher::{Teacher, TeacherAt};
 use crate::error::Error;
-use crate::Scratch;
 use crate::render::{Bitmap, Font, Glyph};
 
 /// Something that draws glyphs, from several threads.

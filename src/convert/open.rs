@@ -1,16 +1,14 @@
 //! Opening a font file, with an answer to what a person may do about one that does not open.
 
-use read_fonts::types::Tag;
-use read_fonts::{FileRef, FontRef};
+use read_fonts::FontRef;
 
 use crate::error::Error;
-
-/// The table that carries the models.
-pub const MODEL_TABLE: Tag = Tag::new(b"Nfrt");
+use crate::render;
+use crate::table;
 
 /// Whether the font carries models already.
 pub fn has_models(font: &FontRef<'_>) -> bool {
-    font.table_directory().table_records().iter().any(|record| record.tag() == MODEL_TABLE)
+    font.table_directory().table_records().iter().any(|record| record.tag() == table::TAG)
 }
 
 /// Opens a font file or one font of a collection.
@@ -20,42 +18,15 @@ pub fn has_models(font: &FontRef<'_>) -> bool {
 /// `Malformed` for bytes that are no font or a file that was cut off, `Unsupported` for a compressed web
 /// font, `InvalidParameter` for an index that the file does not have.
 pub fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
-    match data.get(..4) {
-        Some(b"wOFF" | b"wOF2") => {
-            return Err(Error::Unsupported(
-                "this is a compressed web font (WOFF); decompress it to a .ttf first (woff2_decompress, fonttools)"
-                    .into(),
-            ));
-        }
-        None | Some([0, 0, 0, 0]) => return Err(not_a_font("it has no font header")),
-        Some(_) => {}
+    if let Some(b"wOFF" | b"wOF2") = data.get(..4) {
+        return Err(Error::Unsupported(
+            "this is a compressed web font (WOFF); decompress it to a .ttf first (woff2_decompress, fonttools)"
+                .into(),
+        ));
     }
-    let font = match FileRef::new(data).map_err(|e| not_a_font(&e.to_string()))? {
-        FileRef::Font(font) if index == 0 => font,
-        FileRef::Font(_) => {
-            return Err(Error::InvalidParameter(format!(
-                "the file holds a single font, so there is no font {index}; leave --index out"
-            )));
-        }
-        FileRef::Collection(collection) => {
-            let count = collection.len();
-            if index >= count {
-                return Err(Error::InvalidParameter(format!(
-                    "the collection holds {count} fonts, so there is no font {index}; pass --index 0 to {}",
-                    count.saturating_sub(1)
-                )));
-            }
-            collection.get(index).map_err(|e| {
-                Error::Malformed(format!("font {index} of the collection cannot be read ({e})"))
-            })?
-        }
-    };
+    let font = render::open(data, index)?;
     check_complete(&font, data.len())?;
     Ok(font)
-}
-
-fn not_a_font(why: &str) -> Error {
-    Error::Malformed(format!("this is not a TrueType or OpenType font ({why}); pass a .ttf or .ttc file"))
 }
 
 /// Finds a table that reaches beyond the end of the file: most often a download that stopped early.
@@ -106,6 +77,6 @@ mod tests {
 
     #[test]
     fn a_single_font_has_no_second_one() {
-        assert!(refusal(SANS, 1).contains("leave --index out"));
+        assert!(refusal(SANS, 1).contains("use index 0"));
     }
 }
