@@ -2,4 +2,7 @@
 
 pub mod diff;
 pub mod metrics;
+pub mod picture;
+pub mod report;
 pub mod source;
+pub mod threshold;
