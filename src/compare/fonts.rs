@@ -12,7 +12,7 @@ use super::report::{Report, Subject};
 use super::source::{Hinted, Neural, Unhinted};
 use crate::convert::open::open;
 use crate::convert::ppem::PpemList;
-use crate::convert::select::glyph_name;
+use crate::convert::select::glyph_names;
 use crate::convert::teacher::Teacher;
 use crate::error::Error;
 use crate::render::Font;
@@ -135,9 +135,8 @@ impl<'a> FontPair<'a> {
                 characters.entry(gid.to_u32()).or_insert(character);
             }
         }
-        Report::new(subject, tallies, |gid| {
-            (glyph_name(&self.original, gid), characters.get(&gid.into()).copied())
-        })
+        let names = glyph_names(&self.original);
+        Report::new(subject, tallies, |gid| (names.get(&gid).cloned(), characters.get(&gid.into()).copied()))
     }
 }
 

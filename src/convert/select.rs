@@ -6,7 +6,6 @@ use std::collections::{BTreeSet, HashMap};
 
 use read_fonts::{FontRef, TableProvider};
 use skrifa::MetadataProvider;
-use skrifa::raw::types::GlyphId;
 
 use crate::error::Error;
 
@@ -97,10 +96,8 @@ impl Selection {
         }
         // The first glyph of a name wins, should a damaged font name two alike.
         let mut by_name = HashMap::new();
-        for (gid, name) in font.glyph_names().iter() {
-            if let Ok(gid) = u16::try_from(gid.to_u32()) {
-                by_name.entry(name.to_string()).or_insert(gid);
-            }
+        for (gid, name) in glyph_names(font) {
+            by_name.entry(name).and_modify(|first: &mut u16| *first = gid.min(*first)).or_insert(gid);
         }
         let missing: Vec<_> = self.names.0.iter().filter(|name| !by_name.contains_key(*name)).collect();
         if !missing.is_empty() {
@@ -127,10 +124,11 @@ pub fn glyph_count(font: &FontRef<'_>) -> Result<u32, Error> {
     Ok(maxp.num_glyphs().into())
 }
 
-/// A glyph's name in the font's 'post' table, if it has one.
-pub fn glyph_name(font: &FontRef<'_>, gid: u16) -> Option<String> {
-    let name = font.glyph_names().get(GlyphId::from(gid))?;
-    (!name.is_synthesized()).then(|| name.to_string())
+/// The names of the font's glyphs in 'post'; empty if it has none.
+pub fn glyph_names(font: &FontRef<'_>) -> HashMap<u16, String> {
+    let names = font.glyph_names();
+    let named = names.iter().filter(|(_, name)| !name.is_synthesized());
+    named.filter_map(|(gid, name)| Some((u16::try_from(gid.to_u32()).ok()?, name.to_string()))).collect()
 }
 
 fn missing_character(code: u32, option: &str) -> Error {
