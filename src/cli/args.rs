@@ -8,24 +8,25 @@ use super::failure::Failure;
 use super::files::read;
 use crate::convert::select::{CodePoints, GlyphIds, GlyphNames, Selection};
 
+const HEADING: &str = "Glyphs (all that is given adds up)";
+
 /// Which glyphs; all that is given adds up.
 #[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Glyphs (all that is given adds up)")]
 pub struct SelectionArgs {
     /// The characters of a text
-    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    #[arg(long, help_heading = HEADING, value_name = "TEXT", allow_hyphen_values = true)]
     text: Option<String>,
     /// The characters of a text file in UTF-8
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = HEADING, value_name = "FILE")]
     text_file: Option<PathBuf>,
     /// Code points, as in U+20-7E,U+E9
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, help_heading = HEADING, value_name = "LIST")]
     unicodes: Option<CodePoints>,
     /// Glyph numbers, as in 3,5-9
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, help_heading = HEADING, value_name = "LIST")]
     gids: Option<GlyphIds>,
     /// Glyph names, as in a,eacute
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, help_heading = HEADING, value_name = "LIST")]
     glyphs: Option<GlyphNames>,
 }
 

@@ -17,6 +17,7 @@ use crate::convert::open::{has_models, open};
 use crate::convert::ppem::PpemList;
 use crate::convert::select::{glyph_count, glyph_names};
 use crate::convert::teacher::Teacher;
+use crate::convert::train::Backend;
 use crate::convert::{Conversion, GlyphReport, Options, convert};
 use crate::model::Target;
 
@@ -38,11 +39,14 @@ pub struct Args {
     #[arg(long, value_name = "TARGET", default_value_t)]
     target: Target,
     /// The seed of whatever is drawn at random; the same seed gives the same font
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
     seed: u64,
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
+    /// burn's backend: flex, or ndarray where that is built in
+    #[arg(long, value_name = "NAME", default_value = "flex", value_parser = backend)]
+    backend: Backend,
     /// The font's index, if the input is a collection
     #[arg(long, value_name = "N", default_value_t = 0)]
     index: u32,
@@ -85,6 +89,17 @@ struct WrittenGlyph {
     bad16: f64,
 }
 
+fn backend(name: &str) -> Result<Backend, String> {
+    match name {
+        "flex" => Ok(Backend::Flex),
+        #[cfg(feature = "ndarray")]
+        "ndarray" => Ok(Backend::Ndarray),
+        #[cfg(not(feature = "ndarray"))]
+        "ndarray" => Err("this program is built without it; build it with --features ndarray".into()),
+        _ => Err("use flex or ndarray".into()),
+    }
+}
+
 /// Runs `nfr-convert`.
 ///
 /// # Errors
@@ -99,7 +114,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let report = args.report.as_deref().map(Output::new).transpose()?;
 
     let converted = convert(&input, &options, &reporter);
-    reporter.finish();
+    let elapsed = reporter.elapsed();
+    drop(reporter);
     let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
     // What is written is what was checked: the figures are those of the finished file.
     let names = [&args.input, &args.output].map(|path| path.display().to_string());
@@ -111,7 +127,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     )?;
     output.write(&conversion.font)?;
 
-    let written = summary(args, &input, &conversion, &comparison, reporter.elapsed().as_secs_f64());
+    let written = summary(args, &input, &conversion, &comparison, elapsed.as_secs_f64());
     if let Some(file) = report {
         let json = serde_json::to_string_pretty(&written).map_err(|e| Failure::failed(e.to_string()))?;
         file.write((json + "\n").as_bytes())?;
@@ -154,8 +170,16 @@ fn prepare(args: &Args, input: &[u8], ppem: RangeInclusive<u16>) -> Result<(Opti
         _ => Verbosity::Normal,
     };
     let reporter = Reporter::new(verbosity, gids.len(), glyph_names(&font));
-    let options =
-        Options { index: args.index, gids, ppem, target: args.target, seed: args.seed, jobs: args.jobs };
+    let options = Options {
+        index: args.index,
+        gids,
+        ppem,
+        target: args.target,
+        seed: args.seed,
+        jobs: args.jobs,
+        backend: args.backend,
+        ..Options::default()
+    };
     Ok((options, reporter))
 }
 

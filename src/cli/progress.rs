@@ -2,14 +2,16 @@
 
 use std::collections::HashMap;
 use std::io::{self, IsTerminal, Write};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::convert::Progress;
 
-/// Without a terminal, a line at most this often.
+/// Without a terminal, a line this often.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
 /// The bar is drawn again this often, so that the time moves while glyphs train.
 const TICK: Duration = Duration::from_millis(250);
@@ -24,95 +26,126 @@ pub(super) enum Verbosity {
     Verbose,
 }
 
-/// A bar on a terminal; elsewhere a plain line now and then.
+/// A bar on a terminal; elsewhere a plain line now and then. Dropping it stops both.
 pub(super) struct Reporter {
     verbosity: Verbosity,
     names: HashMap<u16, String>,
     bar: Option<ProgressBar>,
-    total: usize,
-    start: Instant,
-    state: Mutex<State>,
+    state: Arc<Mutex<State>>,
+    /// Its end stops the thread that prints lines.
+    _lines: Option<Sender<()>>,
 }
 
+#[derive(Debug, Clone, Copy)]
 struct State {
+    total: usize,
     done: usize,
     mae_sum: f64,
-    last_line: Instant,
+    start: Instant,
 }
 
 impl Reporter {
     /// `names` are those of the glyphs to come, where they have one.
     pub(super) fn new(verbosity: Verbosity, total: usize, names: HashMap<u16, String>) -> Self {
-        let terminal = verbosity != Verbosity::Quiet && io::stderr().is_terminal();
-        let bar = terminal.then(|| {
+        let state = State { total, done: 0, mae_sum: 0.0, start: Instant::now() };
+        let mut reporter =
+            Self { verbosity, names, bar: None, state: Arc::new(Mutex::new(state)), _lines: None };
+        if verbosity == Verbosity::Quiet {
+            return reporter;
+        }
+        if io::stderr().is_terminal() {
             let bar = ProgressBar::new(total as u64);
             if let Ok(style) = ProgressStyle::with_template(STYLE) {
                 bar.set_style(style);
             }
             bar.enable_steady_tick(TICK);
-            bar
-        });
-        let start = Instant::now();
-        let state = Mutex::new(State { done: 0, mae_sum: 0.0, last_line: start });
-        Self { verbosity, names, bar, total, start, state }
-    }
-
-    /// Takes the bar away.
-    pub(super) fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
+            reporter.bar = Some(bar);
+        } else {
+            let (sender, receiver) = channel();
+            let state = reporter.state.clone();
+            // Glyphs come in groups, so that only the time between lines gives an even picture.
+            thread::spawn(move || print_lines(&receiver, &state));
+            reporter._lines = Some(sender);
         }
+        reporter
     }
 
     /// The time since the start.
     pub(super) fn elapsed(&self) -> Duration {
-        self.start.elapsed()
+        lock(&self.state).start.elapsed()
     }
 
     fn line(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.println(text),
-            // Progress that nobody reads must not stop the work.
-            None => drop(writeln!(io::stderr(), "{text}")),
+            None => print_line(text),
         }
     }
+}
 
-    fn state(&self) -> MutexGuard<'_, State> {
-        // The numbers are valid at any moment, so a panic elsewhere does not spoil them.
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+impl Drop for Reporter {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
     }
 }
 
 impl Progress for Reporter {
     fn glyph_done(&self, gid: u16, mae: f64) {
-        let mut state = self.state();
-        state.done += 1;
-        state.mae_sum += mae;
-        let (done, mean) = (state.done, state.mae_sum / state.done as f64);
+        let state = {
+            let mut state = lock(&self.state);
+            state.done += 1;
+            state.mae_sum += mae;
+            *state
+        };
         if self.verbosity == Verbosity::Verbose {
             let name = self.names.get(&gid).map_or(String::new(), |name| format!(" {name}"));
             self.line(&format!("glyph {gid}{name}: mae {mae:.5}"));
         }
         if let Some(bar) = &self.bar {
-            bar.set_message(format!("mae {mean:.4}"));
+            bar.set_message(format!("mae {:.4}", state.mae()));
             bar.inc(1);
-        } else if self.verbosity != Verbosity::Quiet
-            && (state.last_line.elapsed() >= LINE_INTERVAL || done == self.total)
-        {
-            state.last_line = Instant::now();
-            self.line(&status(done, self.total, mean, self.start.elapsed()));
+        }
+    }
+
+    fn warn(&self, message: &str) {
+        if self.verbosity != Verbosity::Quiet {
+            self.line(&format!("warning: {message}"));
         }
     }
 }
 
-/// The plain line.
-fn status(done: usize, total: usize, mae: f64, elapsed: Duration) -> String {
-    let status = format!("{done} of {total} glyphs, mae {mae:.4} so far");
-    if done >= total {
-        return format!("{status}, {}", duration(elapsed));
+fn print_lines(stop: &Receiver<()>, state: &Mutex<State>) {
+    while stop.recv_timeout(LINE_INTERVAL) == Err(RecvTimeoutError::Timeout) {
+        let state = *lock(state);
+        print_line(&state.line(state.start.elapsed()));
     }
-    let left = elapsed.mul_f64((total - done) as f64 / done.max(1) as f64);
-    format!("{status}, about {} left", duration(left))
+}
+
+fn print_line(text: &str) {
+    // Progress that nobody reads must not stop the work.
+    drop(writeln!(io::stderr(), "{text}"));
+}
+
+fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
+    // The numbers are valid at any moment, so a panic elsewhere does not spoil them.
+    state.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl State {
+    fn mae(&self) -> f64 {
+        self.mae_sum / self.done.max(1) as f64
+    }
+
+    fn line(&self, elapsed: Duration) -> String {
+        let Self { total, done, .. } = *self;
+        if done == 0 {
+            return format!("0 of {total} glyphs after {}", duration(elapsed));
+        }
+        let left = elapsed.mul_f64(total.saturating_sub(done) as f64 / done as f64);
+        format!("{done} of {total} glyphs, mae {:.4} so far, about {} left", self.mae(), duration(left))
+    }
 }
 
 /// A time for people.
@@ -130,8 +163,9 @@ mod tests {
 
     #[test]
     fn the_plain_line_says_what_is_done_and_what_is_left() {
-        let line = status(10, 40, 0.00213, Duration::from_secs(100));
+        let state = |done, mae_sum| State { total: 40, done, mae_sum, start: Instant::now() };
+        let line = state(10, 0.0213).line(Duration::from_secs(100));
         assert_eq!(line, "10 of 40 glyphs, mae 0.0021 so far, about 5 min left");
-        assert_eq!(status(4, 4, 0.5, Duration::from_secs(9)), "4 of 4 glyphs, mae 0.5000 so far, 9 s");
+        assert_eq!(state(0, 0.0).line(Duration::from_secs(10)), "0 of 40 glyphs after 10 s");
     }
 }
