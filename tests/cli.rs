@@ -80,7 +80,7 @@ fn a_collection_index_must_exist() {
     let input = directory.write("in.ttc", &collection(&sans()));
     convert(&directory, &input, &["--index", "1"]).fails_with(&["in.ttc", "collection of 1", "use 0"]);
     convert(&directory, SANS, &["--index", "2"]).fails_with(&["index 2", "use index 0"]);
-    convert(&directory, SANS, &["--index", "one"]).is_wrong_usage(&["--index"]);
+    convert(&directory, SANS, &["--index", "one"]).rejects_usage(&["--index"]);
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn options_that_make_no_sense_are_wrong_usage() {
     let directory = Directory::new();
     let refused = |args: &[&str], parts: &[&str]| {
         let output = directory.name("out.ttf");
-        nfr_convert(&[&[SANS, &output], args].concat()).is_wrong_usage(parts);
+        nfr_convert(&[&[SANS, &output], args].concat()).rejects_usage(parts);
     };
     refused(&["--ppem", "8-"], &["--ppem", "8-64"]);
     refused(&["--ppem", "0"], &["outside 1-1024"]);
@@ -118,13 +118,13 @@ fn options_that_make_no_sense_are_wrong_usage() {
     refused(&["--glyphs", ","], &["list is empty"]);
     refused(&["--quiet", "--verbose"], &["--quiet", "--verbose"]);
     refused(&["--nosuch"], &["--nosuch"]);
-    nfr_convert(&[SANS]).is_wrong_usage(&["<OUTPUT>"]);
-    nfr(&["nosuch"]).is_wrong_usage(&["nosuch"]);
-    nfr(&["render", SANS]).is_wrong_usage(&["--json", "--png"]);
-    nfr(&["render", SANS, "--json", "--zoom", "0"]).is_wrong_usage(&["--zoom"]);
-    nfr(&["diff", SANS]).is_wrong_usage(&["<NEURAL>"]);
+    nfr_convert(&[SANS]).rejects_usage(&["<OUTPUT>"]);
+    nfr(&["nosuch"]).rejects_usage(&["nosuch"]);
+    nfr(&["render", SANS]).rejects_usage(&["--json", "--png"]);
+    nfr(&["render", SANS, "--json", "--zoom", "0"]).rejects_usage(&["--zoom"]);
+    nfr(&["diff", SANS]).rejects_usage(&["<NEURAL>"]);
     for expression in ["mae", "mae>", "mea>1", "mae=1", "mae>1 or max>1", ""] {
-        nfr(&["diff", SANS, SANS, "--fail-on", expression]).is_wrong_usage(&["--fail-on", "mae>0.006"]);
+        nfr(&["diff", SANS, SANS, "--fail-on", expression]).rejects_usage(&["--fail-on", "mae>0.006"]);
     }
 }
 
@@ -157,11 +157,11 @@ fn an_output_that_cannot_be_written_is_found_out_before_training() {
 fn the_input_is_never_overwritten() {
     let directory = Directory::new();
     let input = directory.write("in.ttf", &sans());
-    nfr_convert(&[&input, &input]).is_wrong_usage(&["the output is the input"]);
-    nfr_convert(&[&input, &directory.name("./in.ttf")]).is_wrong_usage(&["the output is the input"]);
+    nfr_convert(&[&input, &input]).rejects_usage(&["the output is the input"]);
+    nfr_convert(&[&input, &directory.name("./in.ttf")]).rejects_usage(&["the output is the input"]);
     let output = directory.name("out.ttf");
-    nfr_convert(&[&input, &output, "--report", &input]).is_wrong_usage(&["the report is the input"]);
-    nfr_convert(&[&input, &output, "--report", &output]).is_wrong_usage(&["the report is the output"]);
+    nfr_convert(&[&input, &output, "--report", &input]).rejects_usage(&["the report is the input"]);
+    nfr_convert(&[&input, &output, "--report", &output]).rejects_usage(&["the report is the output"]);
     assert_eq!(std::fs::read(input).unwrap(), sans());
 }
 

@@ -105,7 +105,8 @@ fn render_draws_sheets() {
     let (once, gag) = (size(&["--text", "ag"]), size(&["--text", "gagag"]));
     assert!(gag.0 > once.0, "a longer text is not wider: {once:?}, {gag:?}");
     let zoomed = size(&["--text", "ag", "--zoom", "4"]);
-    assert!(zoomed.0 > 2 * once.0, "{once:?}, {zoomed:?}");
+    // The two letters are at least 12 pixels wide and 6 high.
+    assert!(zoomed.0 >= once.0 + 3 * 12 && zoomed.1 >= once.1 + 3 * 6, "{once:?}, {zoomed:?}");
     assert!(size(&[]).0 > 12);
 }
 

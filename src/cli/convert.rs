@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::files::{Output, read, same_file};
 use super::progress::{Reporter, Verbosity};
 use crate::compare::fonts::FontPair;
-use crate::compare::report::Report;
+use crate::compare::report::{Report, glyphs};
 use crate::convert::open::{has_models, open};
 use crate::convert::ppem::PpemList;
 use crate::convert::select::{glyph_count, glyph_names};
@@ -213,7 +213,7 @@ fn summary<'r>(
 fn print(written: &Written<'_>) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let unhinted = &written.comparison.totals.unhinted.figures;
-    writeln!(out, "{}: {} glyphs at {} ppem", written.output, written.glyphs.len(), written.ppem)?;
+    writeln!(out, "{}: {} at {} ppem", written.output, glyphs(written.glyphs.len()), written.ppem)?;
     writeln!(out, "table   {} bytes, {:.1} per glyph", written.table_bytes, written.bytes_per_glyph)?;
     writeln!(out, "file    {} bytes, from {}", written.output_bytes, written.input_bytes)?;
     writeln!(out, "mae     {:.5} (unhinted {:.5})", written.mae, unhinted.mae)?;

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::compare::report::glyphs;
 use crate::convert::Progress;
 
 /// Without a terminal, a line this often.
@@ -141,10 +142,10 @@ impl State {
     fn line(&self, elapsed: Duration) -> String {
         let Self { total, done, .. } = *self;
         if done == 0 {
-            return format!("0 of {total} glyphs after {}", duration(elapsed));
+            return format!("0 of {} after {}", glyphs(total), duration(elapsed));
         }
         let left = elapsed.mul_f64(total.saturating_sub(done) as f64 / done as f64);
-        format!("{done} of {total} glyphs, mae {:.4} so far, about {} left", self.mae(), duration(left))
+        format!("{done} of {}, mae {:.4} so far, about {} left", glyphs(total), self.mae(), duration(left))
     }
 }
 

@@ -133,6 +133,7 @@ impl Sums {
 }
 
 /// The pixels of one row, and the column of the first.
+#[derive(Clone, Copy)]
 struct Row<'a> {
     start: i64,
     pixels: &'a [u8],

@@ -152,7 +152,7 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let subject = &self.subject;
         writeln!(f, "{} against {}", subject.neural, subject.original)?;
-        writeln!(f, "{} glyphs, {} ppem, target {}", subject.glyphs, subject.ppem, subject.target)?;
+        writeln!(f, "{}, {} ppem, target {}", glyphs(subject.glyphs), subject.ppem, subject.target)?;
         writeln!(f, "{} bytes of models, {:.1} per glyph", subject.table_bytes, subject.bytes_per_glyph)?;
         writeln!(f, "\n{:<20}{:>9}{:>9}{:>9}{:>10}{:>10}", "", "mae", "rmse", "max", "bad16", "exact")?;
         write_pair(f, "all", &self.totals)?;
@@ -197,6 +197,11 @@ impl OfGlyph {
             _ => title,
         }
     }
+}
+
+/// So many glyphs, in words.
+pub(crate) fn glyphs(count: usize) -> String {
+    format!("{count} glyph{}", if count == 1 { "" } else { "s" })
 }
 
 fn write_pair(f: &mut fmt::Formatter<'_>, sizes: &str, pair: &Compared) -> fmt::Result {

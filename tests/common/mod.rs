@@ -56,7 +56,7 @@ impl Run {
 
     /// Wrong usage: exit code 2, nothing on stdout, and an error with these parts.
     #[track_caller]
-    pub fn is_wrong_usage(self, parts: &[&str]) -> Self {
+    pub fn rejects_usage(self, parts: &[&str]) -> Self {
         assert_eq!(self.code, 2, "{}", self.stderr);
         assert_eq!(self.stdout, "");
         self.says(parts)

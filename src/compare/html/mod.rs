@@ -9,7 +9,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::diff::Sources;
 use super::picture::{Canvas, DIFFERENCE_GAIN, coverage, difference, enclosing, text_line};
-use super::report::{Compared, OfGlyph, Report};
+use super::report::{Compared, OfGlyph, Report, glyphs};
 use crate::error::Error;
 use chart::{Series, line_chart};
 
@@ -42,9 +42,9 @@ pub fn page(report: &Report, sources: Sources<'_>, sample: &Sample<'_>) -> Resul
     let title = escape(&title);
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>\n{}</style>\n\
-         <h1>{title}</h1>\n<p>{} glyphs at {} ppem, hinted for {}; {} bytes of models, {:.1} per glyph.</p>\n",
+         <h1>{title}</h1>\n<p>{} at {} ppem, hinted for {}; {} bytes of models, {:.1} per glyph.</p>\n",
         include_str!("page.css"),
-        subject.glyphs,
+        glyphs(subject.glyphs),
         subject.ppem,
         subject.target,
         subject.table_bytes,
