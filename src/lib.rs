@@ -6,6 +6,8 @@ pub mod render;
 pub mod table;
 
 #[cfg(feature = "convert")]
+pub mod cli;
+#[cfg(feature = "convert")]
 pub mod compare;
 #[cfg(feature = "convert")]
 pub mod convert;

@@ -1,2 +1,10 @@
-//! stub
-fn main() {}
+//! Converts hinted fonts to neural ones.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use nfr::cli;
+
+fn main() -> ExitCode {
+    cli::finish(cli::convert::run(&cli::convert::Args::parse()))
+}

@@ -133,6 +133,7 @@ impl Sums {
 }
 
 /// The pixels of one row, and the column of the first.
+#[derive(Clone, Copy)]
 struct Row<'a> {
     start: i64,
     pixels: &'a [u8],
@@ -176,20 +177,20 @@ pub fn union_box(a: &Placement, b: &Placement) -> (Range<i64>, Range<i64>) {
     }
 }
 
+/// The coverage at a column from the pen and a row counted downwards from the baseline.
+pub fn coverage_at(bitmap: &Bitmap, x: i64, y: i64) -> u8 {
+    let p = &bitmap.placement;
+    let (column, row) = (x - i64::from(p.left), y + i64::from(p.top));
+    let inside = (0..i64::from(p.width)).contains(&column) && (0..i64::from(p.height)).contains(&row);
+    if inside { bitmap.pixels[(row * i64::from(p.width) + column) as usize] } else { 0 }
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
     use proptest::prelude::*;
-
-    /// The coverage at a column and a row counted downwards from the baseline.
-    fn coverage(bitmap: &Bitmap, x: i64, y: i64) -> u8 {
-        let p = &bitmap.placement;
-        let (column, row) = (x - i64::from(p.left), y + i64::from(p.top));
-        let inside = (0..i64::from(p.width)).contains(&column) && (0..i64::from(p.height)).contains(&row);
-        if inside { bitmap.pixels[(row * i64::from(p.width) + column) as usize] } else { 0 }
-    }
 
     /// The definition, pixel by pixel.
     fn naive(pairs: &[(Bitmap, Bitmap)]) -> Figures {
@@ -198,7 +199,7 @@ mod tests {
             let (columns, rows) = union_box(&a.placement, &b.placement);
             for y in rows {
                 for x in columns.clone() {
-                    differences.push(f64::from(coverage(a, x, y)) - f64::from(coverage(b, x, y)));
+                    differences.push(f64::from(coverage_at(a, x, y)) - f64::from(coverage_at(b, x, y)));
                 }
             }
         }

@@ -1,3 +1,11 @@
-//! Comparing renders.
+//! How far a neural font is from the hinted one that it was made from.
 
+pub mod diff;
+pub mod fonts;
+pub mod html;
 pub mod metrics;
+pub mod picture;
+pub mod report;
+pub mod sample;
+pub mod source;
+pub mod threshold;

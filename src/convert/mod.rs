@@ -4,7 +4,10 @@
 pub mod assemble;
 mod deform;
 mod distance;
+pub mod open;
 pub mod pipeline;
+pub mod ppem;
+pub mod select;
 pub mod start;
 pub mod strip;
 pub mod teach;

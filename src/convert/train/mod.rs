@@ -95,9 +95,16 @@ pub fn train(
 ) -> Result<(), Error> {
     let extent = Extent::of(drafts, scale.sizes());
     let device = backend.device().autodiff();
-    let groups = (0..GROUPS)
+    let mut groups = (0..GROUPS)
         .map(|k| Group::new(lessons, drafts, scale, extent, k, &device))
         .collect::<Result<Vec<_>, _>>()?;
+    // With fewer sizes than groups some have nothing to teach.
+    groups.retain(|group| !group.samples.runs.is_empty());
+    if groups.is_empty() {
+        return Ok(());
+    }
+    // Coprime to the number of groups: all come by, and neighbouring sizes are not seen one after the other.
+    let stride = if groups.len().is_multiple_of(3) { 1 } else { 3 };
     let mut weights = Parameters::from_drafts(drafts, extent, &device);
     weights.field = weights.field.require_grad();
     weights.hinted = weights.hinted.map(Tensor::require_grad);
@@ -112,11 +119,7 @@ pub fn train(
     for step in 0..schedule.steps {
         let done = step as f64 / schedule.steps as f64;
         let decay = FINAL_RATE + (1.0 - FINAL_RATE) * 0.5 * (1.0 + (std::f64::consts::PI * done).cos());
-        // 3 is coprime to 8: neighbouring sizes are not seen one after the other.
-        let k = step * 3 % GROUPS;
-        if groups[k].samples.runs.is_empty() {
-            continue;
-        }
+        let k = step * stride % groups.len();
         let used = if done as f32 >= schedule.rounded_from { weights.rounded() } else { weights.clone() };
         let loss = loss(&groups[k], still.as_ref().map(|s| &s[k]), &used, extent);
         let mut gradients = loss.backward();

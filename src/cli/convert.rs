@@ -1,0 +1,223 @@
+//! `nfr-convert`: from a hinted font to a neural one.
+
+use std::io::{self, Write};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use serde::Serialize;
+
+use super::args::{SelectionArgs, all_cores, jobs};
+use super::failure::Failure;
+use super::files::{Output, read, same_file};
+use super::progress::{Reporter, Verbosity};
+use crate::compare::fonts::FontPair;
+use crate::compare::report::{Report, glyphs};
+use crate::convert::open::{has_models, open};
+use crate::convert::ppem::PpemList;
+use crate::convert::select::{glyph_count, glyph_names};
+use crate::convert::teacher::Teacher;
+use crate::convert::train::Backend;
+use crate::convert::{Conversion, GlyphReport, Options, convert};
+use crate::model::Target;
+
+/// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
+/// programs
+#[derive(Debug, Parser)]
+#[command(name = "nfr-convert", version)]
+pub struct Args {
+    /// A hinted TrueType font
+    input: PathBuf,
+    /// The neural font to write
+    output: PathBuf,
+    #[command(flatten)]
+    selection: SelectionArgs,
+    /// The sizes to learn, in pixels per em, without gaps
+    #[arg(long, value_name = "SIZES", default_value = "8-64")]
+    ppem: PpemList,
+    /// What to hint for: smooth, mono or lcd
+    #[arg(long, value_name = "TARGET", default_value_t)]
+    target: Target,
+    /// The seed of whatever is drawn at random; the same seed gives the same font
+    #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
+    seed: u64,
+    /// Threads; the result does not depend on it
+    #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
+    jobs: usize,
+    /// burn's backend: flex, or ndarray where that is built in
+    #[arg(long, value_name = "NAME", default_value = "flex", value_parser = backend)]
+    backend: Backend,
+    /// The font's index, if the input is a collection
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    index: u32,
+    /// Write a report as JSON
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Print nothing but errors
+    #[arg(long, short, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print a line for each glyph
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+/// The `--report`.
+#[derive(Debug, Serialize)]
+struct Written<'r> {
+    input: String,
+    output: String,
+    target: &'static str,
+    ppem: String,
+    seed: u64,
+    glyphs: Vec<WrittenGlyph>,
+    table_bytes: usize,
+    bytes_per_glyph: f64,
+    input_bytes: usize,
+    output_bytes: usize,
+    mae: f64,
+    bad16: f64,
+    seconds: f64,
+    /// The comparison of the written font with its original.
+    comparison: &'r Report,
+}
+
+#[derive(Debug, Serialize)]
+struct WrittenGlyph {
+    gid: u16,
+    bytes: usize,
+    mae: f64,
+    bad16: f64,
+}
+
+fn backend(name: &str) -> Result<Backend, String> {
+    match name {
+        "flex" => Ok(Backend::Flex),
+        #[cfg(feature = "ndarray")]
+        "ndarray" => Ok(Backend::Ndarray),
+        #[cfg(not(feature = "ndarray"))]
+        "ndarray" => Err("this program is built without it; build it with --features ndarray".into()),
+        _ => Err("use flex or ndarray".into()),
+    }
+}
+
+/// Runs `nfr-convert`.
+///
+/// # Errors
+///
+/// Wrong usage, an input that cannot teach, an output that cannot be written. An existing output is then as
+/// it was.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let ppem = check_usage(args)?;
+    let input = read(&args.input)?;
+    let (options, reporter) = prepare(args, &input, ppem).map_err(|e| e.at(args.input.display()))?;
+    let output = Output::new(&args.output)?;
+    let report = args.report.as_deref().map(Output::new).transpose()?;
+
+    let converted = convert(&input, &options, &reporter);
+    let elapsed = reporter.elapsed();
+    drop(reporter);
+    let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
+    // What is written is what was checked: the figures are those of the finished file.
+    let names = [&args.input, &args.output].map(|path| path.display().to_string());
+    let comparison = FontPair::open(&input, args.index, &conversion.font)?.report(
+        [&names[0], &names[1]],
+        &options.gids,
+        &args.ppem,
+        args.jobs,
+    )?;
+    output.write(&conversion.font)?;
+
+    let written = summary(args, &input, &conversion, &comparison, elapsed.as_secs_f64());
+    if let Some(file) = report {
+        let json = serde_json::to_string_pretty(&written).map_err(|e| Failure::failed(e.to_string()))?;
+        file.write((json + "\n").as_bytes())?;
+    }
+    if args.quiet { Ok(()) } else { print(&written) }
+}
+
+fn check_usage(args: &Args) -> Result<RangeInclusive<u16>, Failure> {
+    let clash = |a: &Path, b: &Path, what: &str| {
+        if same_file(a, b) { Err(Failure::usage(format!("{what}; write to another file"))) } else { Ok(()) }
+    };
+    clash(&args.input, &args.output, "the output is the input")?;
+    if let Some(report) = &args.report {
+        clash(&args.input, report, "the report is the input")?;
+        clash(&args.output, report, "the report is the output")?;
+    }
+    args.ppem.contiguous().ok_or_else(|| {
+        let list = &args.ppem;
+        Failure::usage(format!("--ppem {list} leaves sizes out; training takes one range, as in 8-64"))
+    })
+}
+
+/// Checks all that can be known before the training.
+fn prepare(args: &Args, input: &[u8], ppem: RangeInclusive<u16>) -> Result<(Options, Reporter), Failure> {
+    let font = open(input, args.index)?;
+    if has_models(&font) {
+        return Err(Failure::failed(
+            "the font carries an 'Nfrt' table already; convert the hinted font that it was made from",
+        ));
+    }
+    let teacher = Teacher::new(&font, args.target)?;
+    for size in ppem.clone() {
+        teacher.at(size)?;
+    }
+    let all = 0..=u16::try_from(glyph_count(&font)?.saturating_sub(1)).unwrap_or(u16::MAX);
+    let gids = args.selection.selection()?.resolve(&font, all)?;
+    let verbosity = match (args.quiet, args.verbose) {
+        (true, _) => Verbosity::Quiet,
+        (_, true) => Verbosity::Verbose,
+        _ => Verbosity::Normal,
+    };
+    let reporter = Reporter::new(verbosity, gids.len(), glyph_names(&font));
+    let options = Options {
+        index: args.index,
+        gids,
+        ppem,
+        target: args.target,
+        seed: args.seed,
+        jobs: args.jobs,
+        backend: args.backend,
+        ..Options::default()
+    };
+    Ok((options, reporter))
+}
+
+fn summary<'r>(
+    args: &Args,
+    input: &[u8],
+    conversion: &Conversion,
+    comparison: &'r Report,
+    seconds: f64,
+) -> Written<'r> {
+    let glyph = |g: &GlyphReport| WrittenGlyph { gid: g.gid, bytes: g.bytes, mae: g.mae, bad16: g.bad16 };
+    let figures = &comparison.totals.neural.figures;
+    Written {
+        input: args.input.display().to_string(),
+        output: args.output.display().to_string(),
+        target: args.target.name(),
+        ppem: args.ppem.to_string(),
+        seed: args.seed,
+        glyphs: conversion.glyphs.iter().map(glyph).collect(),
+        table_bytes: conversion.table_bytes,
+        bytes_per_glyph: comparison.subject.bytes_per_glyph,
+        input_bytes: input.len(),
+        output_bytes: conversion.font.len(),
+        mae: figures.mae,
+        bad16: figures.bad16,
+        seconds,
+        comparison,
+    }
+}
+
+fn print(written: &Written<'_>) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    let unhinted = &written.comparison.totals.unhinted.figures;
+    writeln!(out, "{}: {} at {} ppem", written.output, glyphs(written.glyphs.len()), written.ppem)?;
+    writeln!(out, "table   {} bytes, {:.1} per glyph", written.table_bytes, written.bytes_per_glyph)?;
+    writeln!(out, "file    {} bytes, from {}", written.output_bytes, written.input_bytes)?;
+    writeln!(out, "mae     {:.5} (unhinted {:.5})", written.mae, unhinted.mae)?;
+    writeln!(out, "bad16   {:.2} % (unhinted {:.2} %)", 100.0 * written.bad16, 100.0 * unhinted.bad16)?;
+    writeln!(out, "time    {:.1} s", written.seconds)?;
+    Ok(())
+}

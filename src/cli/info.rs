@@ -1,0 +1,79 @@
+//! `nfr info`: what a neural font carries.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::failure::Failure;
+use super::files::{open_neural, read};
+use crate::convert::select::glyph_count;
+use crate::table;
+
+/// Says what a neural font carries
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The neural font
+    font: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Info {
+    version: String,
+    target: &'static str,
+    first_ppem: u16,
+    last_ppem: u16,
+    glyphs_with_models: usize,
+    glyphs: u32,
+    table_bytes: usize,
+    bytes_per_glyph: f64,
+    file_bytes: usize,
+    outlines_match: bool,
+}
+
+/// Runs `nfr info`.
+///
+/// # Errors
+///
+/// A file that cannot be read, or that is no neural font.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let data = read(&args.font)?;
+    let (file, font) = open_neural(&args.font, &data)?;
+    let (first_ppem, last_ppem) = font.ppem_range();
+    let glyphs_with_models = font.modelled_glyphs().count();
+    let info = Info {
+        // The reader refuses any other major version.
+        version: format!("{}.{}", table::MAJOR_VERSION, table::MINOR_VERSION),
+        target: font.target().name(),
+        first_ppem,
+        last_ppem,
+        glyphs_with_models,
+        glyphs: glyph_count(&file)?,
+        table_bytes: font.table_len(),
+        bytes_per_glyph: font.table_len() as f64 / glyphs_with_models.max(1) as f64,
+        file_bytes: data.len(),
+        outlines_match: font.outlines_match(),
+    };
+    let mut out = io::stdout().lock();
+    if args.json {
+        let json = serde_json::to_string(&info).map_err(|e| Failure::failed(e.to_string()))?;
+        writeln!(out, "{json}")?;
+        return Ok(());
+    }
+    writeln!(out, "table version   {}", info.version)?;
+    writeln!(out, "target          {}", info.target)?;
+    writeln!(out, "sizes           {first_ppem}-{last_ppem} ppem")?;
+    writeln!(out, "glyphs          {} of {} have models", info.glyphs_with_models, info.glyphs)?;
+    writeln!(out, "table           {} bytes, {:.1} per glyph", info.table_bytes, info.bytes_per_glyph)?;
+    writeln!(out, "file            {} bytes", info.file_bytes)?;
+    let outlines = if info.outlines_match {
+        "those that the models were trained from"
+    } else {
+        "changed after training; convert the font again"
+    };
+    writeln!(out, "outlines        {outlines}")?;
+    Ok(())
+}

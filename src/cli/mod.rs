@@ -1,0 +1,17 @@
+//! The command-line tools as functions; the binaries only parse their arguments.
+//!
+//! Exit codes: 0 done, 1 failed or a threshold missed, 2 wrong usage. Results go to stdout, progress and
+//! messages to stderr.
+
+pub mod convert;
+pub mod diff;
+pub mod info;
+pub mod render;
+
+mod args;
+mod failure;
+mod files;
+mod progress;
+
+pub use args::SelectionArgs;
+pub use failure::{Failure, finish};
