@@ -254,6 +254,21 @@ mod tests {
     }
 
     #[test]
+    fn a_glyph_is_worst_where_its_mean_error_is_largest() {
+        let teacher = teacher();
+        let (truth, unhinted) = (Hinted(&teacher), Unhinted(&teacher));
+        let sources = Sources { truth: &truth, neural: &unhinted, unhinted: &unhinted };
+        let at = |sizes: &[u16]| compare(sources, &[68], sizes, 2).unwrap().by_glyph[&68];
+        let sizes = [9, 12, 17, 24, 40];
+        let mae = |ppem: u16| at(&[ppem]).all.neural.sums.mae();
+        let worst = sizes.into_iter().max_by(|a, b| mae(*a).total_cmp(&mae(*b))).unwrap();
+        assert_eq!(at(&sizes).worst, Some((worst, at(&[worst]).all)));
+        let max = |ppem: u16| at(&[ppem]).all.neural.sums.max();
+        let max_at = sizes.into_iter().max_by_key(|ppem| (max(*ppem), std::cmp::Reverse(*ppem))).unwrap();
+        assert_eq!(at(&sizes).all.neural.max_at, Some(Cell { ppem: max_at, gid: 68 }));
+    }
+
+    #[test]
     fn the_first_error_is_the_same_for_any_number_of_threads() {
         let sources = Sources { truth: &Failing(11), neural: &Failing(0), unhinted: &Failing(0) };
         for jobs in [1, 2, 5] {
