@@ -13,48 +13,55 @@ pub(super) struct Deformation {
 }
 
 const NODES: usize = DEFORM_NODES * DEFORM_NODES;
-/// How much neighbouring nodes are held together, in points.
-const SMOOTHNESS: f64 = 0.02;
-/// Rounds of the power iteration; the strongest pattern need not be exact.
-const ROUNDS: usize = 24;
+/// How much neighbouring nodes are held together, as a share of the weight of all points.
+const SMOOTHNESS: f64 = 1e-4;
+/// Rounds of the power iteration that begins a pattern, and of the refinement that follows.
+const ROUNDS: usize = 12;
 
-/// Finds up to `most` patterns that explain `left[size][point]` (pixels) at the points' plain positions (em).
-/// The search ends when the mean square that is left is below `good_enough` (pixels²) at every size.
+/// One point at one size: where the renderer looks the deformation up (em), and by how much it has to move
+/// the look-up (pixels).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sample {
+    pub(super) at: [f32; 2],
+    pub(super) by: f64,
+}
+
+/// Finds up to `most` patterns that explain `samples[size][point]`. The search ends when the mean square that
+/// is left is below `good_enough` (pixels²) at every size.
 pub(super) fn fit(
-    points: &[[f32; 2]],
-    mut left: Vec<Vec<f64>>,
+    samples: &[Vec<Sample>],
     grid: [GridAxis; 2],
     most: usize,
     good_enough: f64,
 ) -> Deformation {
     let mut found = Deformation::default();
-    if points.is_empty() || left.is_empty() {
-        return found;
-    }
-    let hats: Vec<[(usize, f64); 4]> = points.iter().map(|p| hat(*p, grid)).collect();
-    let factor = cholesky(normal_matrix(&hats));
+    let hats: Vec<Vec<Hat>> =
+        samples.iter().map(|row| row.iter().map(|s| hat(s.at, grid)).collect()).collect();
+    let mut left: Vec<Vec<f64>> = samples.iter().map(|row| row.iter().map(|s| s.by).collect()).collect();
     for _ in 0..most {
-        let worst = left.iter().map(|row| energy(row)).fold(0.0, f64::max);
-        if worst < good_enough * points.len() as f64 {
+        let worst = left.iter().map(|row| energy(row) / row.len().max(1) as f64).fold(0.0, f64::max);
+        if worst < good_enough {
             break;
         }
-        let Some(along_points) = strongest(&left) else { break };
+        // A size counts by what is left at it, so that the patterns see to the worst sizes first: a glyph may
+        // move in its own way at a single size.
+        let importance: Vec<f64> = left.iter().map(|row| energy(row)).collect();
+        let Some(along_points) = strongest(&left, &importance) else { break };
+        let mut strengths: Vec<f64> = left.iter().map(|row| dot(row, &along_points)).collect();
         let mut nodes = vec![0.0; NODES];
-        for (hat, value) in hats.iter().zip(&along_points) {
-            hat.iter().for_each(|(node, weight)| nodes[*node] += weight * value);
+        for _ in 0..ROUNDS {
+            nodes = best_nodes(&hats, &left, &strengths, &importance);
+            for ((strength, hats), row) in strengths.iter_mut().zip(&hats).zip(&left) {
+                let fitted: Vec<f64> = hats.iter().map(|h| value(h, &nodes)).collect();
+                *strength = dot(row, &fitted) / energy(&fitted).max(1e-12);
+            }
         }
-        solve(&factor, &mut nodes);
-        let fitted: Vec<f64> =
-            hats.iter().map(|h| h.iter().map(|(node, w)| nodes[*node] * w).sum()).collect();
-        let norm: f64 = fitted.iter().map(|v| v * v).sum();
         let largest = nodes.iter().fold(0.0f64, |most, v| most.max(v.abs()));
-        if norm <= 0.0 || largest <= 0.0 {
+        if largest <= 0.0 {
             break;
         }
-        let strengths: Vec<f64> =
-            left.iter().map(|row| row.iter().zip(&fitted).map(|(a, b)| a * b).sum::<f64>() / norm).collect();
-        for (row, strength) in left.iter_mut().zip(&strengths) {
-            row.iter_mut().zip(&fitted).for_each(|(value, f)| *value -= strength * f);
+        for ((row, hats), strength) in left.iter_mut().zip(&hats).zip(&strengths) {
+            row.iter_mut().zip(hats).for_each(|(left, hat)| *left -= strength * value(hat, &nodes));
         }
         found.patterns.push(nodes.iter().map(|v| (v / largest) as f32).collect());
         found.strengths.push(strengths.iter().map(|s| (s * largest) as f32).collect());
@@ -62,13 +69,43 @@ pub(super) fn fit(
     found
 }
 
+/// The four nodes around a place and their bilinear weights.
+type Hat = [(usize, f64); 4];
+
+fn value(hat: &Hat, nodes: &[f64]) -> f64 {
+    hat.iter().map(|(node, weight)| nodes[*node] * weight).sum()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The pattern that explains most with given strengths, by least squares.
+fn best_nodes(hats: &[Vec<Hat>], left: &[Vec<f64>], strengths: &[f64], importance: &[f64]) -> Vec<f64> {
+    let (mut matrix, mut right) = (vec![0.0; NODES * NODES], vec![0.0; NODES]);
+    let mut weight = 0.0;
+    for (((hats, row), strength), importance) in hats.iter().zip(left).zip(strengths).zip(importance) {
+        for (hat, by) in hats.iter().zip(row) {
+            for (a, wa) in hat {
+                right[*a] += importance * strength * by * wa;
+                let scale = importance * strength * strength * wa;
+                hat.iter().for_each(|(b, wb)| matrix[a * NODES + b] += scale * wb);
+            }
+            weight += importance * strength * strength;
+        }
+    }
+    hold_together(&mut matrix, SMOOTHNESS * weight.max(1e-12));
+    cholesky(&mut matrix);
+    solve(&matrix, &mut right);
+    right
+}
+
 fn energy(row: &[f64]) -> f64 {
     row.iter().map(|v| v * v).sum()
 }
 
-/// The direction that explains most, by power iteration. A size counts by its energy squared, so that the
-/// patterns see to the worst sizes first: a glyph may move in its own way at a single size.
-fn strongest(rows: &[Vec<f64>]) -> Option<Vec<f64>> {
+/// The direction that explains most, by power iteration.
+fn strongest(rows: &[Vec<f64>], importance: &[f64]) -> Option<Vec<f64>> {
     let mut vector = rows.iter().max_by(|a, b| energy(a).total_cmp(&energy(b)))?.clone();
     for _ in 0..ROUNDS {
         let norm = energy(&vector).sqrt();
@@ -77,8 +114,8 @@ fn strongest(rows: &[Vec<f64>]) -> Option<Vec<f64>> {
         }
         vector.iter_mut().for_each(|v| *v /= norm);
         let mut next = vec![0.0; vector.len()];
-        for row in rows {
-            let strength: f64 = row.iter().zip(&vector).map(|(a, b)| a * b).sum::<f64>() * energy(row);
+        for (row, importance) in rows.iter().zip(importance) {
+            let strength = dot(row, &vector) * importance;
             next.iter_mut().zip(row).for_each(|(sum, v)| *sum += strength * v);
         }
         vector = next;
@@ -86,8 +123,7 @@ fn strongest(rows: &[Vec<f64>]) -> Option<Vec<f64>> {
     Some(vector)
 }
 
-/// The four nodes around a point and their bilinear weights.
-fn hat(point: [f32; 2], grid: [GridAxis; 2]) -> [(usize, f64); 4] {
+fn hat(point: [f32; 2], grid: [GridAxis; 2]) -> Hat {
     let [(column, tx), (row, ty)] = [0, 1].map(|k| grid[k].locate_node(point[k]));
     let (tx, ty) = (f64::from(tx), f64::from(ty));
     let at = row * DEFORM_NODES + column;
@@ -99,30 +135,24 @@ fn hat(point: [f32; 2], grid: [GridAxis; 2]) -> [(usize, f64); 4] {
     ]
 }
 
-fn normal_matrix(hats: &[[(usize, f64); 4]]) -> Vec<f64> {
-    let mut matrix = vec![0.0; NODES * NODES];
-    for hat in hats {
-        for (a, wa) in hat {
-            hat.iter().for_each(|(b, wb)| matrix[a * NODES + b] += wa * wb);
-        }
-    }
+/// Adds a pull between neighbouring nodes, and a trace of one towards zero, so that nodes without points
+/// are determined too.
+fn hold_together(matrix: &mut [f64], pull: f64) {
     for node in 0..NODES {
-        // A trace of its own weight keeps the matrix definite.
-        matrix[node * NODES + node] += SMOOTHNESS * 1e-2;
+        matrix[node * NODES + node] += pull * 1e-2;
         let right = (node % DEFORM_NODES + 1 < DEFORM_NODES).then_some(node + 1);
         let above = (node + DEFORM_NODES < NODES).then_some(node + DEFORM_NODES);
         for other in [right, above].into_iter().flatten() {
-            matrix[node * NODES + node] += SMOOTHNESS;
-            matrix[other * NODES + other] += SMOOTHNESS;
-            matrix[node * NODES + other] -= SMOOTHNESS;
-            matrix[other * NODES + node] -= SMOOTHNESS;
+            matrix[node * NODES + node] += pull;
+            matrix[other * NODES + other] += pull;
+            matrix[node * NODES + other] -= pull;
+            matrix[other * NODES + node] -= pull;
         }
     }
-    matrix
 }
 
-/// Lower Cholesky factor of a symmetric positive definite matrix.
-fn cholesky(mut matrix: Vec<f64>) -> Vec<f64> {
+/// Turns a symmetric positive definite matrix into its lower Cholesky factor.
+fn cholesky(matrix: &mut [f64]) {
     for j in 0..NODES {
         for i in j..NODES {
             let dot: f64 = (0..j).map(|k| matrix[i * NODES + k] * matrix[j * NODES + k]).sum();
@@ -131,7 +161,6 @@ fn cholesky(mut matrix: Vec<f64>) -> Vec<f64> {
                 if i == j { rest.max(1e-12).sqrt() } else { rest / matrix[j * NODES + j] };
         }
     }
-    matrix
 }
 
 fn solve(factor: &[f64], right: &mut [f64]) {

@@ -19,7 +19,7 @@ use crate::render::Bitmap;
 use crate::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM};
 
 /// Glyphs that are trained together. The result depends on it in the last digits, so that it is fixed.
-const CHUNK: usize = 8;
+const CHUNK: usize = 2;
 
 /// What a conversion is asked to do.
 #[derive(Debug, Clone)]

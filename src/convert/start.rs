@@ -1,6 +1,6 @@
 //! A glyph's first guess: the warp from its points, the field from its outline.
 
-use crate::convert::deform;
+use crate::convert::deform::{self, Sample};
 use crate::convert::distance::signed_distance;
 use crate::convert::teach::{HintedGlyph, Lesson};
 use crate::convert::warp::{self, Warp};
@@ -34,7 +34,7 @@ impl Default for Capacity {
 }
 
 /// The fewest cells along an axis.
-const MIN_CELLS: f32 = 6.0;
+const MIN_CELLS: f32 = 10.0;
 /// The most cells along an axis.
 const MAX_CELLS: f32 = 40.0;
 
@@ -105,15 +105,17 @@ impl Draft {
         seed: u64,
     ) {
         let knots: Vec<f32> = self.knots[1].iter().map(|k| f32::from(*k) / units).collect();
-        let points = &lesson.outline.points;
-        let left = |(size, hinted): (usize, &HintedGlyph)| -> Vec<f64> {
+        let samples = |(size, hinted): (usize, &HintedGlyph)| -> Vec<Sample> {
             let ppem = f32::from(hinted.ppem);
             let at_knots = &self.hinted[1][size * knots.len()..(size + 1) * knots.len()];
-            let unwarped = |p: &[f32; 2]| unwarp_point(&knots, at_knots, ppem, p[1]);
-            hinted.points.iter().zip(points).map(|(h, p)| f64::from((p[1] - unwarped(h)) * ppem)).collect()
+            let sample = |(moved, plain): (&[f32; 2], &[f32; 2])| {
+                let y = unwarp_point(&knots, at_knots, ppem, moved[1]);
+                Sample { at: [plain[0], y], by: f64::from((plain[1] - y) * ppem) }
+            };
+            hinted.points.iter().zip(&lesson.outline.points).map(sample).collect()
         };
-        let left: Vec<Vec<f64>> = lesson.sizes.iter().enumerate().map(left).collect();
-        let found = deform::fit(points, left, grid, capacity.rank, capacity.pattern_gain);
+        let samples: Vec<Vec<Sample>> = lesson.sizes.iter().enumerate().map(samples).collect();
+        let found = deform::fit(&samples, grid, capacity.rank, capacity.pattern_gain);
         let nodes = DEFORM_NODES * DEFORM_NODES;
         self.rank = found.patterns.len().max(capacity.least_rank);
         self.patterns = found.patterns.concat();

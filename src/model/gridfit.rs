@@ -29,8 +29,8 @@ pub const MIN_KNOT_GAP: f32 = 1.0 / 64.0;
 pub const MIN_GRADIENT: f32 = 0.03;
 /// The smaller component of the gradient is at least this share of the larger one.
 pub const MIN_SKEW: f32 = 0.02;
-/// A hinted box may reach this far (pixels) into a pixel without claiming it: two steps of the warp.
-const BOX_SLACK: f32 = 1.0 / 16.0;
+/// A hinted box may reach this far (pixels) into a pixel without claiming it: half a step of the warp.
+const BOX_SLACK: f32 = 1.0 / 64.0;
 /// The largest size that is drawn, in pixels per em.
 pub const MAX_PPEM: f32 = 2048.0;
 /// The longest side of a bitmap in pixels.

@@ -33,12 +33,12 @@ pub struct Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            steps: 800,
-            rounded_from: 0.5,
+            steps: 400,
+            rounded_from: 0.7,
             field_rate: 1.5e-3,
-            warp_rate: 0.015,
-            pattern_rate: 0.01,
-            embedding_rate: 0.01,
+            warp_rate: 0.008,
+            pattern_rate: 0.015,
+            embedding_rate: 0.015,
         }
     }
 }
