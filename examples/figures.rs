@@ -10,7 +10,6 @@ use std::thread::available_parallelism;
 use std::time::Instant;
 
 use nfr::compare::fonts::FontPair;
-use nfr::compare::report::Compared;
 use nfr::convert::{Options, Progress, convert};
 
 const FONTS: [&str; 3] =
