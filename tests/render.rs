@@ -210,7 +210,6 @@ fn beyond_the_trained_sizes_the_plain_shape_is_drawn() {
             let plain = teacher.unhinted(gid, ppem).unwrap().rasterize();
             sums.add(&plain, &font.glyph(gid).unwrap().render(ppem).unwrap());
         }
-        println!("{ppem} ppem: mae {:.5}", sums.mae());
         assert!(sums.mae() <= bound, "{ppem} ppem: {}", sums.mae());
     }
 }

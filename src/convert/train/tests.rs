@@ -46,7 +46,6 @@ fn training_lowers_every_glyphs_error() {
         let after = trained(&lessons, scale, target, STEPS);
         for ((lesson, before), after) in lessons.iter().zip(&before).zip(&after) {
             let (before, after) = (mae(lesson, before, scale), mae(lesson, after, scale));
-            println!("{target} glyph {}: {before:.4} to {after:.4}", lesson.gid);
             assert!(after < before * LEFT, "{target} glyph {}: {before} to {after}", lesson.gid);
         }
     }
