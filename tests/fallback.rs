@@ -4,11 +4,11 @@
 #![cfg(feature = "convert")]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+mod samples;
 
 use nfr::{Error, Font, Rasterizer};
 
-use common::{converted, font, gid};
+use samples::{converted, font, gid};
 
 #[cfg(not(feature = "fallback"))]
 #[test]

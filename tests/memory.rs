@@ -3,7 +3,7 @@
 #![allow(unsafe_code, reason = "a global allocator is unsafe to implement")]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+mod samples;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -11,7 +11,7 @@ use std::cell::Cell;
 use nfr::{Font, Rasterizer, Scratch};
 use proptest::prelude::*;
 
-use common::{ascii, converted, font};
+use samples::{ascii, converted, font};
 
 /// Counts what each thread allocates on its own, so that tests beside each other do not disturb each other.
 struct Counting;

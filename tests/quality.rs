@@ -3,7 +3,7 @@
 #![cfg(feature = "convert")]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+mod samples;
 
 use nfr::compare::metrics::{Figures, Sums};
 use nfr::convert::teacher::Teacher;
@@ -11,7 +11,7 @@ use nfr::convert::{Options, convert};
 use nfr::{Font, Rasterizer, Target};
 use read_fonts::FontRef;
 
-use common::{Silent, font, gids};
+use samples::{Silent, font, gids};
 
 /// Round, straight and slanted glyphs, some of the hardest among them.
 const TEXT: &str = "aegmR%8";

@@ -2,7 +2,7 @@
 #![cfg(feature = "convert")]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+mod samples;
 
 use std::sync::LazyLock;
 
@@ -11,7 +11,7 @@ use nfr::convert::teacher::Teacher;
 use nfr::{Bitmap, Error, Font, Rasterizer, Scratch, Target};
 use read_fonts::FontRef;
 
-use common::{converted, font, gid};
+use samples::{converted, font, gid};
 
 /// Glyphs with round, straight, slanted and separate parts, and a blank one.
 const TEXT: &str = "agRiw%. ";
@@ -131,7 +131,7 @@ fn the_font_tells_what_it_was_made_for() {
     assert_eq!(font.ppem_range(), (8, 64));
     assert_eq!(font.target(), Target::Smooth);
     assert!(font.outlines_match());
-    assert_eq!(font.modelled_glyphs().collect::<Vec<_>>(), common::gids(&ORIGINAL, TEXT));
+    assert_eq!(font.modelled_glyphs().collect::<Vec<_>>(), samples::gids(&ORIGINAL, TEXT));
     assert_eq!(font.glyph_for_char('g'), Some(gid(&ORIGINAL, 'g')));
     assert!(font.modelled_glyphs().all(|gid| font.model_len(gid).unwrap() > 0));
 }

@@ -2,7 +2,7 @@
 #![cfg(feature = "convert")]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+mod samples;
 
 use std::sync::LazyLock;
 
@@ -14,7 +14,7 @@ use proptest::collection::{btree_set, vec};
 use proptest::prelude::*;
 use read_fonts::FontRef;
 
-use common::{converted, font};
+use samples::{converted, font};
 
 /// Whatever has the right lengths is a model.
 fn weights(sizes: usize) -> impl Strategy<Value = Weights> {
@@ -148,7 +148,7 @@ static CONVERTED: LazyLock<Vec<u8>> =
 /// The same font, its table made from so many models that they are packed with a dictionary.
 static WITH_DICTIONARY: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let original = font("LiberationSans-Regular");
-    let conversion = converted(&original, &common::ascii(), 0);
+    let conversion = converted(&original, &samples::ascii(), 0);
     assert!(dictionary_len(nfrt(&conversion.font)) > 0, "no dictionary: the test tests nothing");
     conversion.font
 });

@@ -3,7 +3,7 @@
 #![cfg(feature = "convert")]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+mod samples;
 
 use nfr::convert::start::{Capacity, Draft};
 use nfr::convert::teach::lesson;
@@ -13,7 +13,7 @@ use nfr::{Placement, Target};
 use proptest::prelude::*;
 use read_fonts::FontRef;
 
-use common::{ascii, font, gid};
+use samples::{ascii, font, gid};
 
 /// The format's constants, written out: a change of them is a change of the format.
 const WARP_STEPS: f64 = 32.0;
