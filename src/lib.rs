@@ -1,5 +1,7 @@
 //! Neural font rendering: hinted bitmaps from small implicit models, with no bytecode interpreter.
 
+#![forbid(unsafe_code)]
+
 pub mod error;
 pub mod model;
 pub mod render;

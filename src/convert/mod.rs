@@ -7,6 +7,9 @@ mod distance;
 pub mod open;
 pub mod pipeline;
 pub mod ppem;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod samples;
 pub mod select;
 pub mod start;
 pub mod strip;

@@ -133,11 +133,14 @@ impl Draft {
     pub fn quantise(&self) -> Weights {
         use crate::model::gridfit::{EMBEDDING_STEPS, FIELD_STEPS, PATTERN_STEPS};
         let bytes = |values: &[f32], steps: f32| {
-            values.iter().map(|v| (v * steps).round().clamp(-127.0, 127.0) as i8).collect::<Vec<_>>()
+            values
+                .iter()
+                .map(|v| (v * steps).round_ties_even().clamp(-127.0, 127.0) as i8)
+                .collect::<Vec<_>>()
         };
         let warp = |k: usize| AxisWarp {
             knots: self.knots[k].clone(),
-            hinted: self.hinted[k].iter().map(|h| (h * WARP_STEPS).round() as i32).collect(),
+            hinted: self.hinted[k].iter().map(|h| (h * WARP_STEPS).round_ties_even() as i32).collect(),
         };
         Weights {
             bounds: self.bounds,
@@ -187,4 +190,77 @@ fn noise(count: usize, seed: u64) -> Vec<f32> {
             (z >> 40) as f32 / (1u64 << 24) as f32 - 0.5
         })
         .collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::convert::samples::lessons;
+    use crate::model::gridfit::GridFit;
+
+    const TEXT: &str = "agiW%.|_'";
+
+    #[test]
+    fn a_first_guess_is_a_model_for_every_target() {
+        for target in [Target::Smooth, Target::Mono, Target::Lcd] {
+            let (lessons, scale) = lessons(TEXT, target);
+            for lesson in &lessons {
+                let draft = Draft::from_lesson(lesson, scale, target, Capacity::default(), 1);
+                GridFit::new(&draft.quantise(), scale).unwrap();
+                assert_eq!(draft.knots[0].is_empty(), target == Target::Smooth);
+                assert!(draft.knots.iter().all(|k| k.len() <= Capacity::default().knots));
+                let units = f32::from(scale.units_per_em);
+                for [x, y] in lesson.outline.points.iter().map(|p| p.map(|v| v * units)) {
+                    let [x0, y0, x1, y1] = draft.bounds.map(f32::from);
+                    assert!(
+                        x0 <= x && x <= x1 && y0 <= y && y <= y1,
+                        "({x}, {y}) outside {:?}",
+                        draft.bounds
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_field_is_positive_inside_and_negative_outside() {
+        let (lessons, scale) = lessons("|", Target::Smooth);
+        let draft = Draft::from_lesson(&lessons[0], scale, Target::Smooth, Capacity::default(), 1);
+        let stride = draft.cells[0] + 2;
+        let middle = draft.field.len() / stride / 2 * stride;
+        assert!(draft.field[middle + stride / 2] > 0.0, "the middle of a bar");
+        assert!(draft.field[..stride].iter().all(|d| *d < 0.0), "below it");
+        assert!(draft.field[middle] < 0.0 && draft.field[middle + stride - 1] < 0.0, "beside it");
+    }
+
+    #[test]
+    fn the_seed_changes_the_patterns_and_nothing_else() {
+        let (lessons, scale) = lessons("g", Target::Smooth);
+        let guess = |seed| Draft::from_lesson(&lessons[0], scale, Target::Smooth, Capacity::default(), seed);
+        assert_eq!(guess(1), guess(1));
+        let (one, two) = (guess(1), guess(2));
+        assert_ne!(one.patterns, two.patterns);
+        assert_eq!(Draft { patterns: Vec::new(), ..one }, Draft { patterns: Vec::new(), ..two });
+    }
+
+    #[test]
+    fn a_blank_glyph_has_nothing_to_train() {
+        let (lessons, scale) = lessons(" ", Target::Smooth);
+        let draft = Draft::from_lesson(&lessons[0], scale, Target::Smooth, Capacity::default(), 1);
+        assert_eq!(draft, Draft::default());
+        assert_eq!(draft.quantise(), Weights::default());
+    }
+
+    #[test]
+    fn rounding_keeps_weights_within_half_a_step() {
+        let (lessons, scale) = lessons("R", Target::Mono);
+        let draft = Draft::from_lesson(&lessons[0], scale, Target::Mono, Capacity::default(), 1);
+        let stored = draft.quantise();
+        let field = stored.field.iter().zip(&draft.field);
+        let worst = field.map(|(q, v)| (f32::from(*q) - v * crate::model::gridfit::FIELD_STEPS).abs());
+        assert!(worst.fold(0.0, f32::max) <= 0.5, "the field's limit fits a byte");
+        let hinted = stored.warp_x.hinted.iter().zip(&draft.hinted[0]);
+        assert!(hinted.map(|(q, v)| (*q as f32 - v * WARP_STEPS).abs()).fold(0.0, f32::max) <= 0.5);
+    }
 }

@@ -129,3 +129,92 @@ fn tridiagonal(matrix: &[f64], right: &mut [f64]) {
         right[k] = (right[k] - above) / diagonal[k];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// What a fit may leave of moves that it can explain (mean square, a hundredth of a pixel): it stops adding
+    /// knots at `GOOD_ENOUGH`, and `RIDGE` pulls a little.
+    const LEFT_OVER: f64 = 1e-4;
+
+    fn explained(warp: &Warp, size: usize, plain: f32) -> f32 {
+        let (k, t) = hat(&warp.knots, plain);
+        let hinted = &warp.hinted[size];
+        let next = hinted[(k + 1).min(hinted.len() - 1)];
+        hinted[k] + t as f32 * (next - hinted[k])
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(100) })]
+
+        #[test]
+        fn it_explains_a_piecewise_linear_move(
+            gaps in vec(0.08f32..0.3, 1..5),
+            moves in vec(vec(-0.5f32..0.5, 6), 1..4),
+            between in vec(0.1f32..0.9, 0..20),
+        ) {
+            let mut knots = vec![-0.2f32];
+            gaps.iter().for_each(|gap| knots.push(knots[knots.len() - 1] + gap));
+            // All knots are levels of the outline, and no other level is within `MIN_SPACING` of one.
+            let mut plain = knots.clone();
+            for (k, t) in between.iter().enumerate() {
+                let k = k % (knots.len() - 1);
+                plain.push(knots[k] + t * (knots[k + 1] - knots[k]));
+            }
+            let ppem: Vec<u16> = (0..moves.len() as u16).map(|k| 10 + 7 * k).collect();
+            let hinted: Vec<Vec<f32>> = moves
+                .iter()
+                .zip(&ppem)
+                .map(|(moves, s)| {
+                    let moved = |p: f32| {
+                        let (k, t) = hat(&knots, p);
+                        moves[k] + t as f32 * (moves[(k + 1).min(knots.len() - 1)] - moves[k])
+                    };
+                    plain.iter().map(|p| p * f32::from(*s) + moved(*p)).collect()
+                })
+                .collect();
+            let warp = fit(&plain, &hinted, &ppem, 12);
+            prop_assert!(warp.knots.is_sorted_by(|a, b| a < b));
+            let rows = hinted.iter().enumerate();
+            let left = rows.flat_map(|(size, row)| plain.iter().zip(row).map(move |(p, h)| (size, p, h)));
+            let squares: Vec<f64> =
+                left.map(|(size, p, h)| f64::from(explained(&warp, size, *p) - h).powi(2)).collect();
+            let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+            prop_assert!(mean <= LEFT_OVER, "{mean}");
+        }
+    }
+
+    #[test]
+    fn points_that_do_not_move_need_two_knots() {
+        let plain = [0.0, 0.1, 0.3, 0.7];
+        let warp = fit(&plain, &[plain.map(|p| p * 16.0).to_vec()], &[16], 12);
+        assert_eq!(warp.knots, [0.0, 0.7]);
+        assert!((warp.hinted[0][1] - 0.7 * 16.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn it_never_has_more_knots_than_asked_for() {
+        let plain: Vec<f32> = (0..40).map(|k| k as f32 * 0.02).collect();
+        let jagged: Vec<f32> = plain.iter().enumerate().map(|(k, p)| p * 16.0 + (k % 2) as f32).collect();
+        for most in [2, 5, 12] {
+            assert_eq!(fit(&plain, std::slice::from_ref(&jagged), &[16], most).knots.len(), most);
+        }
+    }
+
+    #[test]
+    fn points_on_one_level_need_one_knot() {
+        let warp = fit(&[0.25; 3], &[vec![5.0; 3], vec![9.0; 3]], &[16, 32], 12);
+        assert_eq!(warp.knots, [0.25]);
+        assert!((warp.hinted[0][0] - 5.0).abs() < 1e-4 && (warp.hinted[1][0] - 9.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn an_outline_without_points_has_no_knots() {
+        let warp = fit(&[], &[Vec::new(), Vec::new()], &[16, 17], 12);
+        assert!(warp.knots.is_empty() && warp.hinted == vec![Vec::<f32>::new(); 2]);
+    }
+}

@@ -427,3 +427,7 @@ pub(crate) fn unwarp_point(knots: &[f32], hinted: &[f32], ppem: f32, at: f32) ->
     let k = hinted.partition_point(|h| *h <= at) - 1;
     knots[k] + (at - hinted[k]) * ((knots[k + 1] - knots[k]) / (hinted[k + 1] - hinted[k]))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

@@ -93,7 +93,11 @@ impl Extent {
             glyphs: drafts.len(),
             sizes,
             coefficients: [0, 1].map(|k| most(&|d| d.cells[k] + 2)),
-            knots: [0, 1].map(|k| most(&|d| d.knots[k].len())),
+            // A warp of one knot is padded to two: its line needs an end.
+            knots: [0, 1].map(|k| match most(&|d| d.knots[k].len()) {
+                1 => 2,
+                knots => knots,
+            }),
             rank: most(&|d| d.rank),
         }
     }

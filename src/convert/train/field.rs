@@ -107,6 +107,30 @@ impl Parameters {
             embedding: straight_through(&self.embedding, EMBEDDING_STEPS),
         }
     }
+
+    /// The weights with knots that ascend, as the renderer takes them: one that hinting puts below the one before
+    /// it counts as just above that one.
+    pub(super) fn ordered(self, extent: Extent) -> Self {
+        let [x, y] = self.hinted;
+        let hinted = [ascending(x, extent.knots[0]), ascending(y, extent.knots[1])];
+        Self { hinted, ..self }
+    }
+}
+
+/// The gradient passes to where the knot would be: one that is held up can still find its way.
+fn ascending(hinted: Tensor<1>, knots: usize) -> Tensor<1> {
+    if knots < 2 {
+        return hinted;
+    }
+    let [count] = hinted.dims();
+    let rows = hinted.clone().detach().reshape([count / knots, knots]);
+    let mut columns = vec![rows.clone().narrow(1, 0, 1)];
+    for k in 1..knots {
+        let least = columns[k - 1].clone().add_scalar(MIN_KNOT_GAP);
+        columns.push(rows.clone().narrow(1, k, 1).max_pair(least));
+    }
+    let moved = Tensor::cat(columns, 1).reshape([count]) - hinted.clone().detach();
+    hinted + moved
 }
 
 fn straight_through<const D: usize>(weights: &Tensor<D>, steps: f32) -> Tensor<D> {
@@ -304,3 +328,7 @@ pub(super) fn loss(
     close.sum().div_scalar(count)
         + (lost * wrong * samples.certain.clone()).sum().mul_scalar(SATURATED / count)
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

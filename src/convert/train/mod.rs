@@ -121,6 +121,7 @@ pub fn train(
         let decay = FINAL_RATE + (1.0 - FINAL_RATE) * 0.5 * (1.0 + (std::f64::consts::PI * done).cos());
         let k = step * stride % groups.len();
         let used = if done as f32 >= schedule.rounded_from { weights.rounded() } else { weights.clone() };
+        let used = used.ordered(extent);
         let loss = loss(&groups[k], still.as_ref().map(|s| &s[k]), &used, extent);
         let mut gradients = loss.backward();
         let [x, y] = weights.hinted.clone();
@@ -140,3 +141,7 @@ pub fn train(
     weights.store(drafts, extent);
     Ok(())
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

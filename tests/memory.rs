@@ -1,0 +1,134 @@
+//! What drawing allocates, counted by a global allocator of this file's own.
+#![cfg(feature = "convert")]
+#![allow(unsafe_code, reason = "a global allocator is unsafe to implement")]
+#![allow(clippy::unwrap_used)]
+
+mod samples;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use nfr::{Font, Rasterizer, Scratch};
+use proptest::prelude::*;
+
+use samples::{ascii, converted, font};
+
+/// Counts what each thread allocates on its own, so that tests beside each other do not disturb each other.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+    static LIVE: Cell<isize> = const { Cell::new(0) };
+    static PEAK: Cell<isize> = const { Cell::new(0) };
+}
+
+fn count(change: isize) {
+    if change > 0 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+    }
+    LIVE.set(LIVE.get() + change);
+    PEAK.set(PEAK.get().max(LIVE.get()));
+}
+
+// SAFETY: every call is handed on to the system's allocator unchanged. The counters need no allocation: they are
+// initialised in place and have no destructor.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(layout.size() as isize);
+        // SAFETY: the caller's promise is the one that the system's allocator asks for.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        count(-(layout.size() as isize));
+        // SAFETY: as above.
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const SIZES: [f32; 6] = [8.0, 12.5, 20.0, 33.0, 64.0, 100.0];
+
+#[test]
+fn a_warm_loop_allocates_nothing() {
+    let data = converted(&font("LiberationSans-Regular"), &ascii(), 0).font;
+    let font = Font::parse(&data).unwrap();
+    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let glyphs: Vec<_> = font.modelled_glyphs().map(|gid| (gid, font.glyph(gid).unwrap())).collect();
+    let mut scratch = Scratch::default();
+    let mut pixels = vec![0; 1 << 16];
+    let mut draw_all = || {
+        let before = ALLOCATIONS.get();
+        for (gid, glyph) in &glyphs {
+            for ppem in SIZES {
+                rasterizer.placement(*gid, ppem).unwrap();
+                rasterizer.render_into(*gid, ppem, &mut pixels).unwrap();
+                glyph.render_into(ppem, &mut scratch, &mut pixels).unwrap();
+            }
+        }
+        ALLOCATIONS.get() - before
+    };
+    assert!(draw_all() > 0, "the first round allocates: the counter does not count");
+    assert_eq!(draw_all(), 0);
+}
+
+/// What a rasterizer may take beside its cache: the decoder's window and tables, the dictionary, the hash table,
+/// and the working memory of a glyph of 100 pixels.
+const BESIDE_THE_CACHE: isize = 400_000;
+
+#[test]
+fn a_cache_stays_within_its_limit() {
+    let data = converted(&font("LiberationSans-Regular"), &ascii(), 0).font;
+    let font = Font::parse(&data).unwrap();
+    let mut pixels = vec![0; 1 << 16];
+    let everything: usize = font.modelled_glyphs().map(|gid| font.glyph(gid).unwrap().memory()).sum();
+    let mut taken = |limit: usize| {
+        let before = LIVE.get();
+        let mut rasterizer = Rasterizer::with_cache(&font, limit).unwrap();
+        for gid in font.modelled_glyphs().chain(font.modelled_glyphs()) {
+            rasterizer.render_into(gid, 33.0, &mut pixels).unwrap();
+        }
+        let taken = LIVE.get() - before;
+        drop(rasterizer);
+        taken
+    };
+    for limit in [0, everything / 10, everything / 2] {
+        let taken = taken(limit);
+        assert!(taken <= limit as isize + BESIDE_THE_CACHE, "{taken} bytes with a limit of {limit}");
+    }
+    assert!(taken(usize::MAX) >= everything as isize, "the counter does not count");
+}
+
+/// What reading a table with its models may take, however damaged it is: the decoder's window of 64 KiB, a block
+/// and its literals of up to 256 KiB, 98,047 sequences of 12 bytes in vectors that grow by doubling, and the
+/// largest model.
+const READING: isize = 6 << 20;
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_damaged_font_does_not_make_the_reader_allocate_beyond_its_limits(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        thread_local! {
+            static FONT: Vec<u8> = converted(&font("LiberationSans-Regular"), "aij.", 0).font;
+        }
+        let mut data = FONT.with(Clone::clone);
+        // Tables are in the order of their tags: `Nfrt` comes first, after the directory.
+        let part = data.len().min(6000);
+        for (at, value) in damage {
+            data[at.index(part)] = value;
+        }
+        let before = LIVE.get();
+        PEAK.set(before);
+        if let Ok(font) = Font::parse(&data) {
+            for gid in font.modelled_glyphs().take(8) {
+                let _ = font.glyph(gid);
+            }
+        }
+        prop_assert!(PEAK.get() - before <= READING, "{} bytes", PEAK.get() - before);
+    }
+}

@@ -1,0 +1,248 @@
+//! Drawing converted fonts: buffers, sizes, errors, caches and threads.
+#![cfg(feature = "convert")]
+#![allow(clippy::unwrap_used)]
+
+mod samples;
+
+use std::sync::LazyLock;
+
+use nfr::compare::metrics::Sums;
+use nfr::convert::teacher::Teacher;
+use nfr::{Bitmap, Error, Font, Rasterizer, Scratch, Target};
+use read_fonts::FontRef;
+
+use samples::{converted, font, gid};
+
+/// Glyphs with round, straight, slanted and separate parts, and a blank one.
+const TEXT: &str = "agRiw%. ";
+/// Enough for the deformation to take part.
+const STEPS: usize = 40;
+
+static ORIGINAL: LazyLock<Vec<u8>> = LazyLock::new(|| font("LiberationSans-Regular"));
+static CONVERTED: LazyLock<Vec<u8>> = LazyLock::new(|| converted(&ORIGINAL, TEXT, STEPS).font);
+
+fn neural() -> Font<'static> {
+    Font::parse(&CONVERTED).unwrap()
+}
+
+fn letters() -> impl Iterator<Item = u16> {
+    TEXT.chars().map(|c| gid(&ORIGINAL, c))
+}
+
+/// Whole and fractional sizes, within the trained range and beyond it.
+const PPEM: [f32; 14] = [0.5, 3.0, 7.5, 8.0, 10.9, 11.0, 15.5, 16.0, 31.9, 32.0, 50.25, 64.0, 68.0, 256.0];
+
+#[test]
+fn all_ways_of_drawing_agree() {
+    let font = neural();
+    let (mut rasterizer, mut scratch) = (Rasterizer::new(&font).unwrap(), Scratch::default());
+    for gid in letters() {
+        let glyph = font.glyph(gid).unwrap();
+        for ppem in PPEM {
+            let bitmap = glyph.render(ppem).unwrap();
+            assert_eq!(bitmap.placement, glyph.placement(ppem).unwrap());
+            assert_eq!(bitmap.pixels.len(), bitmap.placement.area());
+            assert_eq!(rasterizer.placement(gid, ppem), Ok(bitmap.placement));
+            assert_eq!(rasterizer.render(gid, ppem).as_ref(), Ok(&bitmap));
+            let mut pixels = vec![0; bitmap.placement.area()];
+            assert_eq!(glyph.render_into(ppem, &mut scratch, &mut pixels), Ok(bitmap.placement));
+            assert_eq!(pixels, bitmap.pixels, "glyph {gid} at {ppem} ppem");
+        }
+    }
+}
+
+#[test]
+fn a_buffer_that_is_too_small_is_an_error_and_left_alone() {
+    let font = neural();
+    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let g = gid(&ORIGINAL, 'g');
+    let area = rasterizer.placement(g, 20.0).unwrap().area();
+    let mut pixels = vec![7; area - 1];
+    let error = rasterizer.render_into(g, 20.0, &mut pixels).unwrap_err();
+    assert!(matches!(error, Error::InvalidParameter(_)), "{error}");
+    let glyph = font.glyph(g).unwrap();
+    let error = glyph.render_into(20.0, &mut Scratch::default(), &mut pixels).unwrap_err();
+    assert!(matches!(error, Error::InvalidParameter(_)), "{error}");
+    assert!(pixels.iter().all(|p| *p == 7));
+}
+
+#[test]
+fn bytes_beyond_the_bitmap_are_left_alone() {
+    let font = neural();
+    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    for gid in letters() {
+        let area = rasterizer.placement(gid, 20.0).unwrap().area();
+        for before in [7, 201] {
+            let mut pixels = vec![before; area + 100];
+            rasterizer.render_into(gid, 20.0, &mut pixels).unwrap();
+            assert!(pixels[area..].iter().all(|p| *p == before));
+            assert_eq!(
+                pixels[..area],
+                rasterizer.render(gid, 20.0).unwrap().pixels,
+                "old pixels shine through"
+            );
+        }
+    }
+}
+
+#[test]
+fn sizes_that_make_no_sense_are_errors() {
+    let font = neural();
+    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    for ppem in [0.0, -0.0, -1.0, 2049.0, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
+        for gid in letters() {
+            let error = rasterizer.render(gid, ppem).unwrap_err();
+            assert!(matches!(error, Error::InvalidParameter(_)), "{ppem}: {error}");
+            let error = font.glyph(gid).unwrap().placement(ppem).unwrap_err();
+            assert!(matches!(error, Error::InvalidParameter(_)), "{ppem}: {error}");
+        }
+    }
+    for ppem in [f32::MIN_POSITIVE, f32::from_bits(1), 1e-10, 0.01, 2048.0] {
+        for gid in letters() {
+            assert!(rasterizer.render(gid, ppem).is_ok(), "glyph {gid} at {ppem} ppem");
+        }
+    }
+}
+
+#[test]
+fn a_glyph_that_the_font_does_not_have_is_missing() {
+    let font = neural();
+    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    for gid in [font.glyph_count(), u16::MAX] {
+        assert!(!font.has_model(gid));
+        assert_eq!(rasterizer.render(gid, 16.0), Err(Error::MissingGlyph(gid)));
+        assert_eq!(font.glyph(gid).err(), Some(Error::MissingGlyph(gid)));
+        assert_eq!(font.model_len(gid), Err(Error::MissingGlyph(gid)));
+        assert_eq!(font.advance(gid, 16.0), 0.0);
+    }
+}
+
+#[test]
+fn a_blank_glyph_is_an_empty_bitmap_with_an_advance() {
+    let font = neural();
+    let space = gid(&ORIGINAL, ' ');
+    assert_eq!(font.glyph(space).unwrap().render(16.0), Ok(Bitmap::default()));
+    assert!(font.advance(space, 16.0) > 3.0);
+}
+
+#[test]
+fn the_font_tells_what_it_was_made_for() {
+    let font = neural();
+    assert_eq!(font.ppem_range(), (8, 64));
+    assert_eq!(font.target(), Target::Smooth);
+    assert!(font.outlines_match());
+    assert_eq!(font.modelled_glyphs().collect::<Vec<_>>(), samples::gids(&ORIGINAL, TEXT));
+    assert_eq!(font.glyph_for_char('g'), Some(gid(&ORIGINAL, 'g')));
+    assert!(font.modelled_glyphs().all(|gid| font.model_len(gid).unwrap() > 0));
+}
+
+#[test]
+fn a_font_without_models_is_unsupported_and_other_bytes_are_malformed() {
+    assert!(matches!(Font::parse(&ORIGINAL), Err(Error::Unsupported(_))));
+    assert!(matches!(Font::parse(b"not a font at all"), Err(Error::Malformed(_))));
+    assert!(matches!(Font::parse(&[]), Err(Error::Malformed(_))));
+    assert!(matches!(Font::from_index(&CONVERTED, 1), Err(Error::InvalidParameter(_))));
+}
+
+/// Full pixels that a bitmap's ink would fill.
+fn ink(bitmap: &Bitmap) -> f32 {
+    bitmap.pixels.iter().map(|p| f32::from(*p)).sum::<f32>() / 255.0
+}
+
+/// A size between two others may have this much less or more ink than either, as a share: hinted stems jump by
+/// whole pixels, and halfway through such a jump their edges are soft.
+const BETWEEN: f32 = 0.06;
+
+#[test]
+fn a_size_between_two_trained_ones_lies_between_them() {
+    let font = neural();
+    for gid in letters() {
+        let glyph = font.glyph(gid).unwrap();
+        for ppem in (8u8..64).map(f32::from) {
+            let [low, between, high] = [0.0, 0.5, 1.0].map(|more| glyph.render(ppem + more).unwrap());
+            let (least, most) = (ink(&low).min(ink(&high)), ink(&low).max(ink(&high)));
+            let found = ink(&between);
+            assert!(
+                found >= least * (1.0 - BETWEEN) && found <= most * (1.0 + BETWEEN),
+                "glyph {gid} at {} ppem: {found} is not in {least}..{most}",
+                ppem + 0.5
+            );
+            let edges = |b: &Bitmap| {
+                let p = b.placement;
+                [p.left, p.top, p.left + p.width as i32, p.top - p.height as i32]
+            };
+            for ((low, between), high) in edges(&low).into_iter().zip(edges(&between)).zip(edges(&high)) {
+                assert!((low.min(high)..=low.max(high)).contains(&between), "glyph {gid} at {ppem}½ ppem");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_small_step_in_size_is_a_small_step_in_pixels() {
+    // A trained size is what the sizes around it tend to: nothing jumps there but the box.
+    let font = neural();
+    for gid in letters() {
+        let glyph = font.glyph(gid).unwrap();
+        for ppem in [8.0, 9.0, 20.0, 40.0, 63.0, 64.0] {
+            let at = glyph.render(ppem).unwrap();
+            for near in [ppem * (1.0 - 1e-4), ppem * (1.0 + 1e-4)] {
+                let mae = Sums::of(&at, &glyph.render(near).unwrap()).mae();
+                assert!(mae < 0.002, "glyph {gid} at {near} ppem: {mae}");
+            }
+        }
+    }
+}
+
+/// Bounds of the mean absolute error against the plain outline where hints have faded, by size. Training fits the
+/// field to hinted bitmaps and rounds it, which moves edges by a fixed share of the em: 1.4 % of a large box after
+/// these few steps. Of boxes of one or two pixels every pixel is an edge.
+const PLAIN_SHAPE_MAE: [(f32, f64); 7] =
+    [(2.0, 0.08), (5.0, 0.025), (7.0, 0.02), (72.0, 0.025), (96.0, 0.025), (128.0, 0.025), (256.0, 0.025)];
+
+#[test]
+fn beyond_the_trained_sizes_the_plain_shape_is_drawn() {
+    let font = neural();
+    let teacher = Teacher::new(&FontRef::new(&ORIGINAL).unwrap(), Target::Smooth).unwrap();
+    for (ppem, bound) in PLAIN_SHAPE_MAE {
+        let mut sums = Sums::default();
+        for gid in letters() {
+            let plain = teacher.unhinted(gid, ppem).unwrap().rasterize();
+            sums.add(&plain, &font.glyph(gid).unwrap().render(ppem).unwrap());
+        }
+        assert!(sums.mae() <= bound, "{ppem} ppem: {}", sums.mae());
+    }
+}
+
+#[test]
+fn a_cache_of_any_size_draws_the_same() {
+    let font = neural();
+    let draw = |bytes: usize| {
+        let mut rasterizer = Rasterizer::with_cache(&font, bytes).unwrap();
+        let mut order: Vec<u16> = letters().collect();
+        order.extend(order.clone().iter().rev());
+        let sizes = order.into_iter().flat_map(|gid| [9.0, 33.0].map(|ppem| (gid, ppem)));
+        sizes.map(|(gid, ppem)| rasterizer.render(gid, ppem).unwrap()).collect::<Vec<_>>()
+    };
+    let unlimited = draw(usize::MAX);
+    for bytes in [0, 1, 10_000, 20_000, 50_000] {
+        assert!(draw(bytes) == unlimited, "a cache of {bytes} bytes");
+    }
+}
+
+#[test]
+fn threads_draw_the_same() {
+    let font = neural();
+    let draw = |glyphs: &[nfr::Glyph]| {
+        let pairs = glyphs.iter().flat_map(|glyph| PPEM.map(|ppem| (glyph, ppem)));
+        pairs.map(|(glyph, ppem)| glyph.render(ppem).unwrap()).collect::<Vec<_>>()
+    };
+    let glyphs: Vec<_> = letters().map(|gid| font.glyph(gid).unwrap()).collect();
+    let alone = draw(&glyphs);
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| draw(&glyphs))).collect();
+        for thread in threads {
+            assert!(thread.join().unwrap() == alone);
+        }
+    });
+}

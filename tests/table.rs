@@ -1,0 +1,272 @@
+//! Models survive being written and read; damaged tables and files are errors, never panics.
+#![cfg(feature = "convert")]
+#![allow(clippy::unwrap_used)]
+
+mod samples;
+
+use std::sync::LazyLock;
+
+use nfr::model::gridfit::{AxisWarp, DEFORM_NODES, Scale, Weights};
+use nfr::table::codec::{MAX_CELLS, MAX_KNOTS, MAX_RANK, decode, encode};
+use nfr::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM, ModelDecoder, TAG, Table};
+use nfr::{Error, Font, Rasterizer, Target};
+use proptest::collection::{btree_set, vec};
+use proptest::prelude::*;
+use read_fonts::FontRef;
+
+use samples::{converted, font};
+
+/// Whatever has the right lengths is a model.
+fn weights(sizes: usize) -> impl Strategy<Value = Weights> {
+    let shape = (
+        [1..=MAX_CELLS, 1..=MAX_CELLS],
+        [
+            btree_set(any::<i16>(), 0..=usize::from(MAX_KNOTS)),
+            btree_set(any::<i16>(), 1..=usize::from(MAX_KNOTS)),
+        ],
+        prop_oneof![Just(0), 1..=MAX_RANK],
+        any::<[i16; 4]>(),
+    );
+    let inked = shape.prop_flat_map(move |(cells, knots, rank, bounds)| {
+        let warp = |knots: &std::collections::BTreeSet<i16>| {
+            let knots: Vec<i16> = knots.iter().copied().collect();
+            // Mostly near the em, now and then anything.
+            let position = prop_oneof![9 => -4096..4096, 1 => any::<i32>()];
+            vec(position, knots.len() * sizes)
+                .prop_map(move |hinted| AxisWarp { knots: knots.clone(), hinted })
+        };
+        let field = (usize::from(cells[0]) + 2) * (usize::from(cells[1]) + 2);
+        let rank_len = usize::from(rank);
+        (
+            vec(any::<i8>(), field),
+            warp(&knots[0]),
+            warp(&knots[1]),
+            vec(any::<i8>(), rank_len * DEFORM_NODES * DEFORM_NODES),
+            vec(any::<i8>(), rank_len * sizes),
+        )
+            .prop_map(move |(field, warp_x, warp_y, patterns, embedding)| Weights {
+                bounds,
+                cells,
+                field,
+                warp_x,
+                warp_y,
+                rank,
+                patterns,
+                embedding,
+            })
+    });
+    let blank = any::<[i16; 4]>().prop_map(|bounds| Weights { bounds, ..Weights::default() });
+    prop_oneof![9 => inked, 1 => blank]
+}
+
+fn scale() -> impl Strategy<Value = Scale> {
+    let last_size = MAX_TRAINED_PPEM;
+    (16u16..=16384, 1..=last_size, 0u16..40).prop_map(move |(units_per_em, first_ppem, more)| Scale {
+        units_per_em,
+        first_ppem,
+        last_ppem: (first_ppem + more).min(last_size),
+    })
+}
+
+fn scale_and<T: std::fmt::Debug, S: Strategy<Value = T>>(
+    strategy: impl Fn(usize) -> S,
+) -> impl Strategy<Value = (Scale, T)> {
+    scale().prop_flat_map(move |scale| (Just(scale), strategy(scale.sizes())))
+}
+
+fn header(scale: Scale) -> Header {
+    Header { first_ppem: scale.first_ppem, last_ppem: scale.last_ppem, ..Header::default() }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(128) })]
+
+    #[test]
+    fn a_model_is_decoded_as_it_was_encoded((scale, weights) in scale_and(weights)) {
+        prop_assert_eq!(decode(&encode(&weights, scale), weights.bounds, scale), Ok(weights));
+    }
+
+    #[test]
+    fn an_encoded_model_that_ends_early_is_malformed(
+        (scale, weights) in scale_and(weights), part in 0.0..1.0f64,
+    ) {
+        let bytes = encode(&weights, scale);
+        let cut = (bytes.len() as f64 * part) as usize;
+        let decoded = decode(&bytes[..cut], weights.bounds, scale);
+        prop_assert!(matches!(decoded, Err(Error::Malformed(_))), "{decoded:?}");
+    }
+
+    #[test]
+    fn random_bytes_are_a_model_or_an_error(
+        (scale, bytes) in scale_and(|_| vec(any::<u8>(), 0..600)), small in any::<bool>(),
+    ) {
+        let mut bytes = bytes;
+        if small {
+            // Small counts get past the limits.
+            bytes.iter_mut().take(5).for_each(|b| *b %= 5);
+        }
+        let _ = decode(&bytes, [0; 4], scale);
+    }
+}
+
+proptest! {
+    // zstd at its highest level takes its time.
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+
+    #[test]
+    fn a_table_is_read_as_it_was_written(
+        (scale, models) in scale_and(|sizes| vec((any::<u16>(), weights(sizes)), 0..5)),
+        target in prop_oneof![Just(Target::Smooth), Just(Target::Mono), Just(Target::Lcd)],
+        (outline_hash, seed, steps, knots, rank, cell) in any::<(u64, u64, u16, u8, u8, u16)>(),
+    ) {
+        let mut models: Vec<_> = models.into_iter().map(|(gid, weights)| GlyphModel { gid, weights }).collect();
+        models.sort_by_key(|m| m.gid);
+        models.dedup_by_key(|m| m.gid);
+        let header = Header { target, outline_hash, seed, steps, knots, rank, cell, ..header(scale) };
+        let (bytes, lengths) = table::write(&header, &models, scale).unwrap();
+        let table = Table::parse(&bytes).unwrap();
+        prop_assert_eq!(table.header(), &header);
+        prop_assert_eq!(table.table_len(), bytes.len());
+        prop_assert!(table.gids().eq(models.iter().map(|m| m.gid)));
+        let mut decoder = ModelDecoder::new(&table).unwrap();
+        for (model, length) in models.iter().zip(lengths) {
+            prop_assert!(table.contains(model.gid));
+            prop_assert_eq!(table.model_len(model.gid), Ok(length));
+            prop_assert_eq!(&decoder.decode(&table, model.gid, scale).unwrap(), &model.weights);
+        }
+        if let Some(missing) = (0..=u16::MAX).find(|gid| models.iter().all(|m| m.gid != *gid)) {
+            prop_assert!(!table.contains(missing));
+            prop_assert_eq!(decoder.decode(&table, missing, scale), Err(Error::MissingGlyph(missing)));
+        }
+    }
+}
+
+/// A converted font with a few models, packed without a dictionary: there are too few of them for one.
+static CONVERTED: LazyLock<Vec<u8>> =
+    LazyLock::new(|| converted(&font("LiberationSans-Regular"), "aij.", 0).font);
+
+/// The same font, its table made from so many models that they are packed with a dictionary.
+static WITH_DICTIONARY: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let original = font("LiberationSans-Regular");
+    let conversion = converted(&original, &samples::ascii(), 0);
+    assert!(dictionary_len(nfrt(&conversion.font)) > 0, "no dictionary: the test tests nothing");
+    conversion.font
+});
+
+/// The `Nfrt` table's bytes.
+fn nfrt(font: &[u8]) -> &[u8] {
+    FontRef::new(font).unwrap().table_data(TAG).unwrap().as_bytes()
+}
+
+fn dictionary_len(nfrt: &[u8]) -> usize {
+    const LENGTH_AT: usize = 28;
+    u32::from_be_bytes(nfrt[LENGTH_AT..LENGTH_AT + 4].try_into().unwrap()) as usize
+}
+
+/// Where a font's `Nfrt` table begins in the file.
+fn table_start(font: &[u8]) -> usize {
+    nfrt(font).as_ptr() as usize - font.as_ptr() as usize
+}
+
+/// Bitmaps larger than this are not drawn in these tests: a damaged model may ask for any size up to the limit.
+const DRAWN_AREA: usize = 1 << 14;
+
+/// Does with a font what an application does. Errors are fine, panics are not.
+fn use_font(data: &[u8]) -> Result<usize, Error> {
+    let font = Font::parse(data)?;
+    let _ = (font.outlines_match(), font.advance(36, 16.0), font.glyph_for_char('a'));
+    let mut rasterizer = Rasterizer::new(&font)?;
+    let mut drawn = 0;
+    let mut pixels = vec![0; DRAWN_AREA];
+    for gid in font.modelled_glyphs().take(8) {
+        for ppem in [12.0, 33.5] {
+            match rasterizer.placement(gid, ppem) {
+                Ok(placement) if placement.area() <= DRAWN_AREA => {
+                    assert_eq!(rasterizer.render_into(gid, ppem, &mut pixels), Ok(placement));
+                    drawn += 1;
+                }
+                Ok(_) => {}
+                Err(Error::Malformed(_) | Error::LimitExceeded(_) | Error::MissingGlyph(_)) => {}
+                Err(other) => panic!("the wrong kind of error: {other:?}"),
+            }
+        }
+    }
+    Ok(drawn)
+}
+
+/// The kinds of error that a damaged file may be.
+fn survives(data: &[u8]) -> Result<(), TestCaseError> {
+    match use_font(data) {
+        Ok(_)
+        | Err(
+            Error::Malformed(_) | Error::Unsupported(_) | Error::LimitExceeded(_) | Error::MissingGlyph(_),
+        ) => Ok(()),
+        Err(other) => Err(TestCaseError::fail(format!("the wrong kind of error: {other:?}"))),
+    }
+}
+
+/// A place in a file and what to put there.
+fn damage() -> impl Strategy<Value = Vec<(prop::sample::Index, u8)>> {
+    vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)
+}
+
+fn damaged(data: &[u8], from: usize, to: usize, damage: &[(prop::sample::Index, u8)]) -> Vec<u8> {
+    let mut data = data.to_vec();
+    for (at, value) in damage {
+        data[from + at.index(to - from)] = *value;
+    }
+    data
+}
+
+proptest! {
+    // A longer session: PROPTEST_CASES=1000000 cargo test --release --test table damage
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn damage_anywhere_in_the_file_is_survived(damage in damage()) {
+        survives(&damaged(&CONVERTED, 0, CONVERTED.len(), &damage))?;
+    }
+
+    #[test]
+    fn damage_to_the_tables_that_are_read_is_survived(damage in damage()) {
+        // The table directory and `head`, `maxp`, `cmap`, `hmtx`.
+        let directory = 12 + 16 * 24;
+        survives(&damaged(&CONVERTED, 0, directory, &damage))?;
+    }
+
+    #[test]
+    fn damage_to_the_models_is_survived(damage in damage()) {
+        let start = table_start(&CONVERTED);
+        survives(&damaged(&CONVERTED, start, start + nfrt(&CONVERTED).len(), &damage))?;
+    }
+
+    #[test]
+    fn damage_to_models_packed_with_a_dictionary_is_survived(damage in damage()) {
+        let start = table_start(&WITH_DICTIONARY);
+        survives(&damaged(&WITH_DICTIONARY, start, start + nfrt(&WITH_DICTIONARY).len(), &damage))?;
+    }
+
+    #[test]
+    fn damage_to_the_dictionary_is_survived(damage in damage()) {
+        let (start, table) = (table_start(&WITH_DICTIONARY), nfrt(&WITH_DICTIONARY));
+        let at = start + 44 + 14 * Table::parse(table).unwrap().gids().len();
+        survives(&damaged(&WITH_DICTIONARY, at, at + dictionary_len(table), &damage))?;
+    }
+
+    #[test]
+    fn damage_by_cutting_the_file_off_is_survived(at in any::<prop::sample::Index>()) {
+        survives(&CONVERTED[..at.index(CONVERTED.len())])?;
+    }
+
+    #[test]
+    fn damage_by_cutting_the_table_off_is_an_error(at in any::<prop::sample::Index>()) {
+        let table = nfrt(&CONVERTED);
+        prop_assert!(matches!(Table::parse(&table[..at.index(table.len())]), Err(Error::Malformed(_))));
+    }
+}
+
+#[test]
+fn a_whole_font_is_drawn() {
+    assert_eq!(use_font(&CONVERTED), Ok(8));
+    assert_eq!(use_font(&WITH_DICTIONARY), Ok(16));
+}
