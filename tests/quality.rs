@@ -79,9 +79,9 @@ fn hold(name: &str, target: Target, bounds: &Bounds) {
 }
 
 /// In y alone. Measured: 0.11–0.13, 0.04–0.08 and 1,070–1,190.
-const SMOOTH: Bounds = Bounds { mae: 0.2, bad16: 0.12, bytes_per_glyph: 1300 };
+const SMOOTH: Bounds = Bounds { mae: 0.2, bad16: 0.12, bytes_per_glyph: 1500 };
 /// In x and y, where the warp has twice as many numbers. Measured: 0.09–0.12, 0.06–0.08 and 1,310–1,510.
-const MONO: Bounds = Bounds { mae: 0.2, bad16: 0.12, bytes_per_glyph: 1700 };
+const MONO: Bounds = Bounds { mae: 0.2, bad16: 0.12, bytes_per_glyph: 1800 };
 
 #[test]
 fn liberation_sans_is_much_closer_to_its_hinted_bitmaps_than_its_outlines_are() {

@@ -15,7 +15,7 @@ use read_fonts::FontRef;
 use read_fonts::types::Tag;
 use write_fonts::FontBuilder;
 
-use samples::{FONTS, ascii, coverage, font, gid, max_difference};
+use samples::{FONTS, ascii, font, gid, max_difference};
 
 /// The rasterisers cut curves into straight pieces at different places. Where thin curves share a pixel, that adds
 /// up, to 13 levels in the '@' at 13 ppem; `bad16` begins where this bound ends.

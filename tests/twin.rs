@@ -17,15 +17,15 @@ use samples::{ascii, font, gid};
 
 /// The format's constants, written out: a change of them is a change of the format.
 const WARP_STEPS: f64 = 32.0;
-const FIELD_STEPS: f64 = 768.0;
+const FIELD_STEPS: f64 = 1536.0;
 const PATTERN_STEPS: f64 = 16.0;
 const EMBEDDING_STEPS: f64 = 32.0;
 const PADDING: f64 = 0.03;
 const NODES: usize = 8;
-const MIN_KNOT_GAP: f64 = 1.0 / 64.0;
+const MIN_KNOT_GAP: f64 = 1.0 / 256.0;
 const MIN_GRADIENT: f64 = 0.03;
 const MIN_SKEW: f64 = 0.02;
-const BOX_SLACK: f64 = 1.0 / 16.0;
+const BOX_SLACK: f64 = 1.0 / 64.0;
 const FADE_SPAN: f64 = 0.125;
 
 /// A model at a size.
@@ -142,9 +142,10 @@ impl Twin<'_> {
 
     fn draw(&self, place: Placement) -> Vec<f64> {
         let n = match self.ppem {
-            s if s < 11.0 => 4,
-            s if s < 16.0 => 3,
-            s if s < 32.0 => 2,
+            s if s < 11.0 => 6,
+            s if s < 16.0 => 4,
+            s if s < 24.0 => 3,
+            s if s < 96.0 => 2,
             _ => 1,
         };
         let knots = [self.knots(0), self.knots(1)];

@@ -141,6 +141,9 @@ mod tests {
     /// knots at `GOOD_ENOUGH`, and `RIDGE` pulls a little.
     const LEFT_OVER: f64 = 1e-4;
 
+    /// Stops the search for knots (pixels²).
+    const GOOD_ENOUGH: f64 = 2e-5;
+
     fn explained(warp: &Warp, size: usize, plain: f32) -> f32 {
         let (k, t) = hat(&warp.knots, plain);
         let hinted = &warp.hinted[size];
@@ -177,7 +180,7 @@ mod tests {
                     plain.iter().map(|p| p * f32::from(*s) + moved(*p)).collect()
                 })
                 .collect();
-            let warp = fit(&plain, &hinted, &ppem, 12);
+            let warp = fit(&plain, &hinted, &ppem, 12, GOOD_ENOUGH);
             prop_assert!(warp.knots.is_sorted_by(|a, b| a < b));
             let rows = hinted.iter().enumerate();
             let left = rows.flat_map(|(size, row)| plain.iter().zip(row).map(move |(p, h)| (size, p, h)));
@@ -191,7 +194,7 @@ mod tests {
     #[test]
     fn points_that_do_not_move_need_two_knots() {
         let plain = [0.0, 0.1, 0.3, 0.7];
-        let warp = fit(&plain, &[plain.map(|p| p * 16.0).to_vec()], &[16], 12);
+        let warp = fit(&plain, &[plain.map(|p| p * 16.0).to_vec()], &[16], 12, GOOD_ENOUGH);
         assert_eq!(warp.knots, [0.0, 0.7]);
         assert!((warp.hinted[0][1] - 0.7 * 16.0).abs() < 1e-4);
     }
@@ -201,20 +204,23 @@ mod tests {
         let plain: Vec<f32> = (0..40).map(|k| k as f32 * 0.02).collect();
         let jagged: Vec<f32> = plain.iter().enumerate().map(|(k, p)| p * 16.0 + (k % 2) as f32).collect();
         for most in [2, 5, 12] {
-            assert_eq!(fit(&plain, std::slice::from_ref(&jagged), &[16], most).knots.len(), most);
+            assert_eq!(
+                fit(&plain, std::slice::from_ref(&jagged), &[16], most, GOOD_ENOUGH).knots.len(),
+                most
+            );
         }
     }
 
     #[test]
     fn points_on_one_level_need_one_knot() {
-        let warp = fit(&[0.25; 3], &[vec![5.0; 3], vec![9.0; 3]], &[16, 32], 12);
+        let warp = fit(&[0.25; 3], &[vec![5.0; 3], vec![9.0; 3]], &[16, 32], 12, GOOD_ENOUGH);
         assert_eq!(warp.knots, [0.25]);
         assert!((warp.hinted[0][0] - 5.0).abs() < 1e-4 && (warp.hinted[1][0] - 9.0).abs() < 1e-4);
     }
 
     #[test]
     fn an_outline_without_points_has_no_knots() {
-        let warp = fit(&[], &[Vec::new(), Vec::new()], &[16, 17], 12);
+        let warp = fit(&[], &[Vec::new(), Vec::new()], &[16, 17], 12, GOOD_ENOUGH);
         assert!(warp.knots.is_empty() && warp.hinted == vec![Vec::<f32>::new(); 2]);
     }
 }

@@ -24,7 +24,7 @@ pub const DEFORM_NODES: usize = 8;
 /// Half the distance (in samples) over which the warp's slope is taken.
 pub const SLOPE_REACH: f32 = 0.25;
 /// Knots keep at least this distance in pixels, so that the warp can be inverted.
-pub const MIN_KNOT_GAP: f32 = 1.0 / 64.0;
+pub const MIN_KNOT_GAP: f32 = 1.0 / 256.0;
 /// Gradients (em per em) below this are raised to it; it bounds how steep an edge of a flat field can look.
 pub const MIN_GRADIENT: f32 = 0.03;
 /// The smaller component of the gradient is at least this share of the larger one.
@@ -92,7 +92,8 @@ pub fn samples_per_pixel(ppem: f32) -> usize {
         s if s < 11.0 => 6,
         s if s < 16.0 => 4,
         s if s < 24.0 => 3,
-        _ => 2,
+        s if s < 96.0 => 2,
+        _ => 1,
     }
 }
 

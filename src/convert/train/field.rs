@@ -30,24 +30,39 @@ fn values<const D: usize>(tensor: &Tensor<D>) -> Vec<f32> {
     tensor.clone().into_data().iter::<f32>().collect()
 }
 
+/// Values for each knot at each size, laid out as `Parameters::hinted`; `fill` where a glyph has fewer knots.
+pub(super) fn hinted_tensors(
+    each: &[&[Vec<f32>; 2]],
+    drafts: &[Draft],
+    extent: Extent,
+    fill: f32,
+    device: &Device,
+) -> [Tensor<1>; 2] {
+    [0, 1].map(|axis| {
+        let knots = extent.knots[axis];
+        let mut all = vec![fill; (extent.glyphs * extent.sizes * knots).max(1)];
+        for (g, (values, draft)) in each.iter().zip(drafts).enumerate() {
+            let own = draft.knots[axis].len();
+            for (k, v) in values[axis].iter().enumerate() {
+                all[(g * extent.sizes + k / own) * knots + k % own] = *v;
+            }
+        }
+        let count = all.len();
+        tensor(all, [count], device)
+    })
+}
+
 impl Parameters {
     pub(super) fn from_drafts(drafts: &[Draft], extent: Extent, device: &Device) -> Self {
         let [nx, ny] = extent.coefficients;
         let nodes = DEFORM_NODES;
         let mut field = vec![0.0; extent.glyphs * nx * ny];
-        let mut hinted = extent.knots.map(|k| vec![0.0; (extent.glyphs * extent.sizes * k).max(1)]);
         let mut patterns = vec![0.0; extent.glyphs * nodes * extent.rank * nodes];
         let mut embedding = vec![0.0; extent.glyphs * extent.sizes * extent.rank];
         for (g, draft) in drafts.iter().enumerate() {
             let stride = draft.cells[0] + 2;
             for (k, v) in draft.field.iter().enumerate() {
                 field[(g * nx + k % stride) * ny + k / stride] = *v;
-            }
-            for (axis, hinted) in hinted.iter_mut().enumerate() {
-                let own = draft.knots[axis].len();
-                for (k, v) in draft.hinted[axis].iter().enumerate() {
-                    hinted[(g * extent.sizes + k / own) * extent.knots[axis] + k % own] = *v;
-                }
             }
             for (k, v) in draft.patterns.iter().enumerate() {
                 let (r, y, x) = (k / (nodes * nodes), k / nodes % nodes, k % nodes);
@@ -57,10 +72,8 @@ impl Parameters {
                 embedding[(g * extent.sizes + k / draft.rank) * extent.rank + k % draft.rank] = *v;
             }
         }
-        let hinted = hinted.map(|h| {
-            let count = h.len();
-            tensor(h, [count], device)
-        });
+        let hinted = drafts.iter().map(|d| &d.hinted).collect::<Vec<_>>();
+        let hinted = hinted_tensors(&hinted, drafts, extent, 0.0, device);
         Self {
             field: tensor(field, [extent.glyphs, nx, ny], device),
             hinted,

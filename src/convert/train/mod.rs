@@ -1,6 +1,7 @@
 //! Training: gradient descent on the bitmaps, with rounding in the loop for the last part.
 
 mod batch;
+mod bounds;
 mod field;
 
 use burn::optim::{Adam, AdamConfig, AdamState, Optimizer};
@@ -11,6 +12,7 @@ use crate::convert::teach::Lesson;
 use crate::error::Error;
 use crate::model::gridfit::Scale;
 use batch::{Extent, GROUPS, Group};
+use bounds::{box_bounds, within};
 use field::{ColumnBasis, Parameters, column_basis, loss};
 
 /// How long and how fast to train.
@@ -110,6 +112,7 @@ pub fn train(
     weights.hinted = weights.hinted.map(Tensor::require_grad);
     weights.patterns = weights.patterns.require_grad();
     weights.embedding = weights.embedding.require_grad();
+    let bounds = box_bounds(lessons, drafts, extent, &device);
     // Columns that are not warped stay where they are.
     let still: Option<Vec<ColumnBasis>> = (extent.knots[0] == 0)
         .then(|| groups.iter().map(|g| column_basis(&g.columns, &weights.hinted[0], extent)).collect());
@@ -128,10 +131,10 @@ pub fn train(
         let (gx, gy) = (x.grad_remove(&mut gradients), y.grad_remove(&mut gradients));
         let gradient = weights.field.grad_remove(&mut gradients);
         weights.field = field.step(&adam, schedule.field_rate * decay, weights.field, gradient);
-        weights.hinted = [
-            hinted_x.step(&adam, schedule.warp_rate * decay, x, gx),
-            hinted_y.step(&adam, schedule.warp_rate * decay, y, gy),
-        ];
+        let [low, high] = bounds.clone();
+        let rate = schedule.warp_rate * decay;
+        let stepped = [hinted_x.step(&adam, rate, x, gx), hinted_y.step(&adam, rate, y, gy)];
+        weights.hinted = within(stepped, low, high);
         let gradient = weights.patterns.grad_remove(&mut gradients);
         weights.patterns = patterns.step(&adam, schedule.pattern_rate * decay, weights.patterns, gradient);
         let gradient = weights.embedding.grad_remove(&mut gradients);
