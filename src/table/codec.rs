@@ -63,6 +63,7 @@ fn predict_field(field: &[i8], stride: usize, at: usize) -> i8 {
     (left + below - corner).clamp(left.min(below), left.max(below)) as i8
 }
 
+#[cfg(feature = "convert")]
 fn zigzag(v: i32) -> u32 {
     ((v << 1) ^ (v >> 31)) as u32
 }
@@ -71,7 +72,16 @@ fn unzigzag(v: u32) -> i32 {
     (v >> 1) as i32 ^ -((v & 1) as i32)
 }
 
-/// Turns weights into bytes.
+/// Whether a model is larger than readers accept.
+#[cfg(feature = "convert")]
+pub(super) fn exceeds_limits(weights: &Weights) -> bool {
+    let knots = [&weights.warp_x, &weights.warp_y].map(|w| w.knots.len());
+    weights.cells.iter().any(|c| *c > MAX_CELLS)
+        || knots.iter().any(|k| *k > usize::from(MAX_KNOTS))
+        || weights.rank > MAX_RANK
+}
+
+/// Turns weights into bytes. Their lengths fit each other and the limits of this module.
 #[cfg(feature = "convert")]
 pub fn encode(weights: &Weights, scale: Scale) -> Vec<u8> {
     let mut out = vec![
@@ -119,7 +129,8 @@ fn best_prediction(warp: &AxisWarp, scale: Scale, k: usize) -> (Predictor, Vec<u
             })
             .collect()
     };
-    let bits = |residuals: &[u32]| residuals.iter().map(|r| 33 - (r + 1).leading_zeros()).sum::<u32>();
+    let bits =
+        |residuals: &[u32]| residuals.iter().map(|r| 33 - r.saturating_add(1).leading_zeros()).sum::<u32>();
     PREDICTORS
         .into_iter()
         .map(|how| (how, residuals(how)))

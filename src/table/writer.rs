@@ -1,6 +1,9 @@
 //! Writing the table.
 
-use super::{HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MINOR_VERSION, ZSTD_MAGIC, codec};
+use super::{
+    HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MINOR_VERSION, ZSTD_MAGIC,
+    codec,
+};
 use crate::error::Error;
 use crate::model::Target;
 use crate::model::gridfit::{Scale, Weights};
@@ -28,9 +31,9 @@ fn packing(e: &std::io::Error) -> Error {
 ///
 /// # Errors
 ///
-/// `Io` if zstd fails.
+/// `LimitExceeded` for a model that readers would refuse, `Io` if zstd fails.
 pub fn write(header: &Header, models: &[GlyphModel], scale: Scale) -> Result<(Vec<u8>, Vec<usize>), Error> {
-    let plain: Vec<Vec<u8>> = models.iter().map(|m| codec::encode(&m.weights, scale)).collect();
+    let plain: Vec<Vec<u8>> = models.iter().map(|m| plain(m, scale)).collect::<Result<_, _>>()?;
     let mut best = (Vec::new(), pack(&plain, &[])?);
     let total = |(dictionary, packed): &(Vec<u8>, Vec<Vec<u8>>)| {
         dictionary.len() + packed.iter().map(Vec::len).sum::<usize>()
@@ -57,6 +60,20 @@ pub fn write(header: &Header, models: &[GlyphModel], scale: Scale) -> Result<(Ve
     out.extend_from_slice(&dictionary);
     out.extend(packed.iter().flatten());
     Ok((out, packed.iter().map(Vec::len).collect()))
+}
+
+fn plain(model: &GlyphModel, scale: Scale) -> Result<Vec<u8>, Error> {
+    let too_large = || {
+        let gid = model.gid;
+        Error::LimitExceeded(format!(
+            "the model of glyph {gid} is too large to store; train fewer sizes, or fewer knots and patterns"
+        ))
+    };
+    if codec::exceeds_limits(&model.weights) {
+        return Err(too_large());
+    }
+    let bytes = codec::encode(&model.weights, scale);
+    if bytes.len() <= MAX_MODEL_BYTES { Ok(bytes) } else { Err(too_large()) }
 }
 
 fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, dictionary: usize, payload: usize) {
