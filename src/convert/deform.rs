@@ -173,3 +173,76 @@ fn solve(factor: &[f64], right: &mut [f64]) {
         right[i] = (right[i] - dot) / factor[i * NODES + i];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid() -> [GridAxis; 2] {
+        [GridAxis::new(0.0, 0.6, 18), GridAxis::new(-0.2, 0.7, 27)]
+    }
+
+    fn points() -> Vec<[f32; 2]> {
+        (0..60)
+            .map(|k| [0.6 * ((k * 7) % 60) as f32 / 60.0, -0.2 + 0.9 * ((k * 13) % 60) as f32 / 60.0])
+            .collect()
+    }
+
+    /// Mean square of the worst size that patterns leave of moves.
+    fn worst_left(found: &Deformation, moves: &[Vec<f64>]) -> f64 {
+        let left = moves.iter().enumerate().map(|(size, row)| {
+            let squares = points().into_iter().zip(row).map(|(point, moved)| {
+                let each = found.patterns.iter().zip(&found.strengths).map(|(pattern, strength)| {
+                    let nodes: Vec<f64> = pattern.iter().map(|v| f64::from(*v)).collect();
+                    value(&hat(point, grid()), &nodes) * f64::from(strength[size])
+                });
+                (moved - each.sum::<f64>()).powi(2)
+            });
+            squares.sum::<f64>() / row.len() as f64
+        });
+        left.fold(0.0, f64::max)
+    }
+
+    fn samples(moves: &[Vec<f64>]) -> Vec<Vec<Sample>> {
+        let row =
+            |row: &Vec<f64>| points().into_iter().zip(row).map(|(at, by)| Sample { at, by: *by }).collect();
+        moves.iter().map(row).collect()
+    }
+
+    /// Moves of two smooth kinds whose strengths change with the size.
+    fn two_kinds() -> Vec<Vec<f64>> {
+        let kinds = |p: &[f32; 2]| [f64::from(p[0]), f64::from(p[0] * p[1]) - 0.1];
+        (0..9)
+            .map(|size| {
+                let strengths = [0.8 * f64::from(size % 3) - 0.5, 1.5 - 0.3 * f64::from(size)];
+                points().iter().map(|p| kinds(p)[0] * strengths[0] + kinds(p)[1] * strengths[1]).collect()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn two_patterns_explain_moves_of_two_kinds() {
+        let moves = two_kinds();
+        let found = fit(&samples(&moves), grid(), 8, 1e-4);
+        assert!(found.patterns.len() >= 2);
+        assert!(worst_left(&found, &moves) <= 1e-4);
+        let two = fit(&samples(&moves), grid(), 2, 0.0);
+        assert!(worst_left(&two, &moves) <= 1e-3, "{}", worst_left(&two, &moves));
+    }
+
+    #[test]
+    fn patterns_are_no_more_than_asked_for_and_no_larger_than_one() {
+        let found = fit(&samples(&two_kinds()), grid(), 1, 0.0);
+        assert_eq!(found.patterns.len(), 1);
+        assert!(found.patterns[0].iter().all(|v| v.abs() <= 1.0));
+    }
+
+    #[test]
+    fn points_that_do_not_move_need_no_pattern() {
+        let still = samples(&vec![vec![0.0; 60]; 3]);
+        assert_eq!(fit(&still, grid(), 8, 0.01), Deformation::default());
+        assert_eq!(fit(&still, grid(), 8, 0.0), Deformation::default());
+        assert_eq!(fit(&vec![Vec::new(); 3], grid(), 8, 0.0), Deformation::default());
+        assert_eq!(fit(&[], grid(), 8, 0.0), Deformation::default());
+    }
+}

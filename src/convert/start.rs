@@ -235,11 +235,13 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_changes_the_patterns_and_nothing_else() {
-        let (lessons, scale) = lessons("|", Target::Smooth);
-        let guess = |seed| Draft::from_lesson(&lessons[0], scale, Target::Smooth, Capacity::default(), seed);
+    fn the_seed_changes_patterns_that_the_points_do_not_call_for_and_nothing_else() {
+        let (lessons, scale) = lessons("g", Target::Smooth);
+        let none_called_for = Capacity { pattern_gain: f64::INFINITY, ..Capacity::default() };
+        let guess = |seed| Draft::from_lesson(&lessons[0], scale, Target::Smooth, none_called_for, seed);
         assert_eq!(guess(1), guess(1));
         let (one, two) = (guess(1), guess(2));
+        assert_eq!(one.rank, none_called_for.least_rank);
         assert_ne!(one.patterns, two.patterns);
         assert_eq!(Draft { patterns: Vec::new(), ..one }, Draft { patterns: Vec::new(), ..two });
     }

@@ -30,13 +30,13 @@ pub const MIN_GRADIENT: f32 = 0.03;
 /// The smaller component of the gradient is at least this share of the larger one.
 pub const MIN_SKEW: f32 = 0.02;
 /// A hinted box may reach this far (pixels) into a pixel without claiming it: half a step of the warp.
-const BOX_SLACK: f32 = 1.0 / 64.0;
+pub const BOX_SLACK: f32 = 1.0 / 64.0;
 /// The largest size that is drawn, in pixels per em.
 pub const MAX_PPEM: f32 = 2048.0;
 /// The longest side of a bitmap in pixels.
 const MAX_SIDE: u32 = 8192;
 /// Displacements fade to nothing over this share of the size beyond the trained ones.
-const FADE_SPAN: f32 = 0.125;
+pub const FADE_SPAN: f32 = 0.125;
 
 /// One axis of the warp: knots in font units and their hinted positions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

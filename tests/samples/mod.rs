@@ -47,17 +47,6 @@ pub(crate) fn converted(font: &[u8], text: &str, steps: usize) -> Conversion {
     convert(font, &options, &Silent).unwrap()
 }
 
-/// Coverage of the pixel whose lower left corner is at (x, y), which may lie outside the bitmap's box.
-pub(crate) fn coverage(bitmap: &Bitmap, x: i32, y: i32) -> u8 {
-    let (i, j) = (x - bitmap.placement.left, bitmap.placement.top - 1 - y);
-    let (width, height) = (bitmap.placement.width as i32, bitmap.placement.height as i32);
-    if (0..width).contains(&i) && (0..height).contains(&j) {
-        bitmap.pixels[(j * width + i) as usize]
-    } else {
-        0
-    }
-}
-
 /// The largest difference of a pixel over the union of two bitmaps' boxes.
 pub(crate) fn max_difference(a: &Bitmap, b: &Bitmap) -> u8 {
     nfr::compare::metrics::Sums::of(a, b).max()

@@ -93,7 +93,7 @@ fn displacements_fade_out_beyond_the_trained_sizes() {
 fn small_sizes_have_more_samples() {
     let samples: Vec<usize> = (1..100).map(|s| samples_per_pixel(s as f32)).collect();
     assert!(samples.is_sorted_by(|a, b| a >= b));
-    assert_eq!((samples[0], samples[98]), (6, 1));
+    assert!(samples[98] >= 1 && samples[98] < samples[0]);
 }
 
 #[test]
