@@ -1,4 +1,17 @@
 //! Neural font rendering: hinted bitmaps from small implicit models, with no bytecode interpreter.
+//!
+//! A converted font carries a model for each glyph in a table `Nfrt`. [`Font`] opens it, [`Rasterizer`] draws:
+//!
+//! ```
+//! # fn draw(file: &[u8]) -> Result<nfr::Bitmap, nfr::Error> {
+//! let font = nfr::Font::parse(file)?;
+//! nfr::Rasterizer::new(&font)?.render(font.glyph_for_char('g').unwrap_or(0), 16.0)
+//! # }
+//! # assert!(draw(b"no font").is_err());
+//! ```
+//!
+//! With the default feature `convert`, `convert` trains and writes such fonts and `compare` measures them; without
+//! default features this is the renderer alone. `spec/nfrt.md` in the repository describes the table.
 
 #![forbid(unsafe_code)]
 
@@ -18,3 +31,8 @@ pub use error::Error;
 pub use model::Target;
 pub use model::gridfit::Scratch;
 pub use render::{Bitmap, Font, Glyph, Placement, Rasterizer};
+
+/// Runs the examples of README as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
