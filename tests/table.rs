@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use nfr::model::gridfit::{AxisWarp, DEFORM_NODES, Scale, Weights};
 use nfr::table::codec::{MAX_CELLS, MAX_KNOTS, MAX_RANK, decode, encode};
-use nfr::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM, ModelDecoder, TAG, Table};
+use nfr::table::{self, GlyphModel, Header, MAX_PPEM_STEP, MAX_TRAINED_PPEM, ModelDecoder, TAG, Table};
 use nfr::{Error, Font, Rasterizer, Target};
 use proptest::collection::{btree_set, vec};
 use proptest::prelude::*;
@@ -63,11 +63,14 @@ fn weights(sizes: usize) -> impl Strategy<Value = Weights> {
 
 fn scale() -> impl Strategy<Value = Scale> {
     let last_size = MAX_TRAINED_PPEM;
-    (16u16..=16384, 1..=last_size, 0u16..40).prop_map(move |(units_per_em, first_ppem, more)| Scale {
-        units_per_em,
-        first_ppem,
-        last_ppem: (first_ppem + more).min(last_size),
-    })
+    (16u16..=16384, 1..=last_size, 0u16..40, 1u16..=MAX_PPEM_STEP).prop_map(
+        move |(units_per_em, first_ppem, more, step)| Scale {
+            units_per_em,
+            first_ppem,
+            last_ppem: first_ppem + more.min((last_size - first_ppem) / step) * step,
+            step,
+        },
+    )
 }
 
 fn scale_and<T: std::fmt::Debug, S: Strategy<Value = T>>(
@@ -77,7 +80,12 @@ fn scale_and<T: std::fmt::Debug, S: Strategy<Value = T>>(
 }
 
 fn header(scale: Scale) -> Header {
-    Header { first_ppem: scale.first_ppem, last_ppem: scale.last_ppem, ..Header::default() }
+    Header {
+        first_ppem: scale.first_ppem,
+        last_ppem: scale.last_ppem,
+        skipped: (scale.step - 1) as u8,
+        ..Header::default()
+    }
 }
 
 proptest! {
@@ -128,6 +136,7 @@ proptest! {
         let (bytes, lengths) = table::write(&header, &models, scale).unwrap();
         let table = Table::parse(&bytes).unwrap();
         prop_assert_eq!(table.header(), &header);
+        prop_assert_eq!(table.header().scale(scale.units_per_em), scale);
         prop_assert_eq!(table.table_len(), bytes.len());
         prop_assert!(table.gids().eq(models.iter().map(|m| m.gid)));
         let mut decoder = ModelDecoder::new(&table).unwrap();
@@ -145,7 +154,7 @@ proptest! {
 
 #[test]
 fn a_model_that_readers_would_refuse_is_not_written() {
-    let scale = Scale { units_per_em: 1000, first_ppem: 1, last_ppem: MAX_TRAINED_PPEM };
+    let scale = Scale { units_per_em: 1000, first_ppem: 1, last_ppem: MAX_TRAINED_PPEM, step: 1 };
     let knots: Vec<i16> = (0..i16::from(MAX_KNOTS)).collect();
     let hinted = |value: i32| vec![value; knots.len() * scale.sizes()];
     let fits = Weights {

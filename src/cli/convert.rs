@@ -32,9 +32,15 @@ pub struct Args {
     output: PathBuf,
     #[command(flatten)]
     selection: SelectionArgs,
-    /// The sizes to learn, in pixels per em, without gaps
+    /// The sizes to learn, in pixels per em: a range, which may have a step, as in 8-64:2
+    ///
+    /// With --train-ppem, the sizes that the figures are about.
     #[arg(long, value_name = "SIZES", default_value = "8-64")]
     ppem: PpemList,
+    /// Learn these sizes instead of those of --ppem; sizes between them are drawn with what their neighbours
+    /// have learnt
+    #[arg(long, value_name = "SIZES")]
+    train_ppem: Option<PpemList>,
     /// What to hint for: smooth, mono or lcd
     #[arg(long, value_name = "TARGET", default_value_t)]
     target: Target,
@@ -107,9 +113,9 @@ fn backend(name: &str) -> Result<Backend, String> {
 /// Wrong usage, an input that cannot teach, an output that cannot be written. An existing output is then as
 /// it was.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let ppem = check_usage(args)?;
+    let sizes = check_usage(args)?;
     let input = read(&args.input)?;
-    let (options, reporter) = prepare(args, &input, ppem).map_err(|e| e.at(args.input.display()))?;
+    let (options, reporter) = prepare(args, &input, sizes).map_err(|e| e.at(args.input.display()))?;
     let output = Output::new(&args.output)?;
     let report = args.report.as_deref().map(Output::new).transpose()?;
 
@@ -135,7 +141,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.quiet { Ok(()) } else { print(&written) }
 }
 
-fn check_usage(args: &Args) -> Result<RangeInclusive<u16>, Failure> {
+/// The sizes to learn, and the step between them.
+fn check_usage(args: &Args) -> Result<(RangeInclusive<u16>, u16), Failure> {
     let clash = |a: &Path, b: &Path, what: &str| {
         if same_file(a, b) { Err(Failure::usage(format!("{what}; write to another file"))) } else { Ok(()) }
     };
@@ -144,14 +151,23 @@ fn check_usage(args: &Args) -> Result<RangeInclusive<u16>, Failure> {
         clash(&args.input, report, "the report is the input")?;
         clash(&args.output, report, "the report is the output")?;
     }
-    args.ppem.contiguous().ok_or_else(|| {
-        let list = &args.ppem;
-        Failure::usage(format!("--ppem {list} leaves sizes out; training takes one range, as in 8-64"))
+    let (option, list) = match &args.train_ppem {
+        Some(list) => ("--train-ppem", list),
+        None => ("--ppem", &args.ppem),
+    };
+    list.evenly_spaced().ok_or_else(|| {
+        Failure::usage(format!(
+            "{option} {list} is uneven; training takes one range with one step, as in 8-64 or 8-64:2"
+        ))
     })
 }
 
 /// Checks all that can be known before the training.
-fn prepare(args: &Args, input: &[u8], ppem: RangeInclusive<u16>) -> Result<(Options, Reporter), Failure> {
+fn prepare(
+    args: &Args,
+    input: &[u8],
+    (ppem, ppem_step): (RangeInclusive<u16>, u16),
+) -> Result<(Options, Reporter), Failure> {
     let font = open(input, args.index)?;
     if has_models(&font) {
         return Err(Failure::failed(
@@ -159,7 +175,7 @@ fn prepare(args: &Args, input: &[u8], ppem: RangeInclusive<u16>) -> Result<(Opti
         ));
     }
     let teacher = Teacher::new(&font, args.target)?;
-    for size in ppem.clone() {
+    for size in args.ppem.sizes().iter().copied().chain(ppem.clone().step_by(ppem_step.into())) {
         teacher.at(size)?;
     }
     let all = 0..=u16::try_from(glyph_count(&font)?.saturating_sub(1)).unwrap_or(u16::MAX);
@@ -174,6 +190,7 @@ fn prepare(args: &Args, input: &[u8], ppem: RangeInclusive<u16>) -> Result<(Opti
         index: args.index,
         gids,
         ppem,
+        ppem_step,
         target: args.target,
         seed: args.seed,
         jobs: args.jobs,

@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::model::Target;
 use crate::model::gridfit::{GridFit, Scale, Scratch, Weights};
 use crate::render::Bitmap;
-use crate::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM};
+use crate::table::{self, GlyphModel, Header, MAX_PPEM_STEP, MAX_TRAINED_PPEM};
 
 /// Glyphs that are trained together. The result depends on it in the last digits, so that it is fixed.
 const CHUNK: usize = 2;
@@ -30,6 +30,8 @@ pub struct Options {
     pub gids: Vec<u16>,
     /// The sizes to train on, in pixels per em.
     pub ppem: RangeInclusive<u16>,
+    /// From one of them to the next. Sizes between are drawn with what their neighbours have learnt.
+    pub ppem_step: u16,
     /// What the teacher hints for.
     pub target: Target,
     /// Seeds whatever the training draws at random.
@@ -51,6 +53,7 @@ impl Default for Options {
             index: 0,
             gids: Vec::new(),
             ppem: 8..=64,
+            ppem_step: 1,
             target: Target::default(),
             seed: 1,
             jobs: 1,
@@ -124,19 +127,18 @@ pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Resu
         ));
     }
     let teacher = Teacher::new(&font, options.target)?;
-    let sizes = options.ppem.clone().map(|s| teacher.at(s)).collect::<Result<Vec<_>, _>>()?;
-    let scale = Scale {
-        units_per_em: teacher.units_per_em(),
-        first_ppem: *options.ppem.start(),
-        last_ppem: *options.ppem.end(),
-    };
+    let header = header(&font, options)?;
+    let scale = header.scale(teacher.units_per_em());
+    let sizes = (0..scale.sizes())
+        .map(|size| teacher.at(scale.ppem_of(size) as u16))
+        .collect::<Result<Vec<_>, _>>()?;
     let trained = train_all(&teacher, &sizes, scale, options, progress)?;
     let mut sums = Sums::default();
     trained.iter().for_each(|t| sums.merge(&t.sums));
     let figures: Vec<_> = trained.iter().map(|t| t.sums.figures()).collect();
     let models: Vec<GlyphModel> =
         trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
-    let (table, lengths) = table::write(&header(&font, options)?, &models, scale)?;
+    let (table, lengths) = table::write(&header, &models, scale)?;
     let glyphs = models.iter().zip(lengths).zip(figures).map(|((model, bytes), figures)| GlyphReport {
         gid: model.gid,
         bytes,
@@ -163,6 +165,9 @@ fn check(options: &Options) -> Result<(), Error> {
     if first == 0 || first > last || last > MAX_TRAINED_PPEM {
         return wrong(format!("sizes {first}–{last} ppem; use a range within 1–{MAX_TRAINED_PPEM}"));
     }
+    if !(1..=MAX_PPEM_STEP).contains(&options.ppem_step) {
+        return wrong(format!("{} ppem from size to size; use 1–{MAX_PPEM_STEP}", options.ppem_step));
+    }
     Ok(())
 }
 
@@ -170,7 +175,8 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
     Ok(Header {
         target: options.target,
         first_ppem: *options.ppem.start(),
-        last_ppem: *options.ppem.end(),
+        last_ppem: options.ppem.clone().step_by(options.ppem_step.into()).last().unwrap_or(0),
+        skipped: (options.ppem_step - 1) as u8,
         outline_hash: outline_hash(font)?,
         seed: options.seed,
         steps: options.schedule.steps as u16,

@@ -77,12 +77,19 @@ pub struct Scale {
     pub first_ppem: u16,
     /// The largest trained size.
     pub last_ppem: u16,
+    /// From one trained size to the next; at least 1, and a divisor of what lies between the ends.
+    pub step: u16,
 }
 
 impl Scale {
     /// The number of trained sizes.
     pub fn sizes(&self) -> usize {
-        usize::from(self.last_ppem - self.first_ppem) + 1
+        usize::from((self.last_ppem - self.first_ppem) / self.step) + 1
+    }
+
+    /// A trained size in pixels per em, by its index.
+    pub fn ppem_of(&self, size: usize) -> usize {
+        usize::from(self.first_ppem) + size * usize::from(self.step)
     }
 }
 
@@ -222,9 +229,7 @@ impl GridFit {
         let em = |v: i16| f32::from(v) / f32::from(scale.units_per_em);
         let bounds = weights.bounds.map(em);
         let moves = |warp: &AxisWarp| {
-            let plain = |size: usize, knot: usize| {
-                em(warp.knots[knot]) * (usize::from(scale.first_ppem) + size) as f32
-            };
+            let plain = |size: usize, knot: usize| em(warp.knots[knot]) * scale.ppem_of(size) as f32;
             let knots = warp.knots.len().max(1);
             let moved = |(at, h): (usize, &i32)| *h as f32 / WARP_STEPS - plain(at / knots, at % knots);
             warp.hinted.iter().enumerate().map(moved).collect::<Vec<f32>>()
@@ -255,7 +260,7 @@ impl GridFit {
     /// their displacements are mixed, beyond the trained ones they fade.
     fn mix(&self, ppem: f32) -> (usize, usize, f32, f32) {
         let (first, last) = (f32::from(self.scale.first_ppem), f32::from(self.scale.last_ppem));
-        let at = (ppem - first).clamp(0.0, last - first);
+        let at = (ppem - first).clamp(0.0, last - first) / f32::from(self.scale.step);
         let size = at as usize;
         let beyond =
             (first - ppem).max(0.0) / (first * FADE_SPAN) + (ppem - last).max(0.0) / (last * FADE_SPAN);

@@ -49,9 +49,7 @@ impl<'a> Font<'a> {
             Error::Unsupported("the font has no 'Nfrt' table; make one with nfr-convert".into())
         })?;
         let table = Table::parse(bytes.as_bytes())?;
-        let units_per_em = head_units(&font)?;
-        let header = table.header();
-        let scale = Scale { units_per_em, first_ppem: header.first_ppem, last_ppem: header.last_ppem };
+        let scale = table.header().scale(head_units(&font)?);
         let glyph_count = font
             .maxp()
             .map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e})")))?
@@ -72,6 +70,11 @@ impl<'a> Font<'a> {
     /// The sizes that the models were trained on, in pixels per em, both ends included.
     pub fn ppem_range(&self) -> (u16, u16) {
         (self.scale.first_ppem, self.scale.last_ppem)
+    }
+
+    /// From one trained size to the next: 1 if none between the ends is left out.
+    pub fn ppem_step(&self) -> u16 {
+        self.scale.step
     }
 
     /// The length of the `Nfrt` table in bytes.

@@ -10,6 +10,7 @@ pub use reader::{ModelDecoder, Table};
 pub use writer::{GlyphModel, write};
 
 use crate::model::Target;
+use crate::model::gridfit::Scale;
 use read_fonts::types::Tag;
 
 /// The table's tag.
@@ -28,6 +29,8 @@ pub(crate) const MAX_MODEL_BYTES: usize = 1 << 16;
 pub(crate) const MAX_DICTIONARY_BYTES: usize = 1 << 16;
 /// The largest trained size, in pixels per em.
 pub const MAX_TRAINED_PPEM: u16 = 1024;
+/// The largest step between trained sizes: the table stores it less one, in a byte.
+pub const MAX_PPEM_STEP: u16 = 256;
 
 /// What a conversion was asked for, as the table records it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,6 +41,8 @@ pub struct Header {
     pub first_ppem: u16,
     /// The largest trained size.
     pub last_ppem: u16,
+    /// Sizes that are left out between one trained size and the next.
+    pub skipped: u8,
     /// FNV-1a of the outlines that the models were trained from.
     pub outline_hash: u64,
     /// The seed of the training.
@@ -50,6 +55,18 @@ pub struct Header {
     pub rank: u8,
     /// Edge of a field cell in 1/10000 em.
     pub cell: u16,
+}
+
+impl Header {
+    /// The trained sizes as models know them.
+    pub fn scale(&self, units_per_em: u16) -> Scale {
+        Scale {
+            units_per_em,
+            first_ppem: self.first_ppem,
+            last_ppem: self.last_ppem,
+            step: u16::from(self.skipped) + 1,
+        }
+    }
 }
 
 /// FNV-1a, 64 bits, over a byte string; `state` is the hash so far.

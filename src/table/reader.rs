@@ -62,14 +62,16 @@ impl<'a> Table<'a> {
             knots: u8_at(38)?,
             rank: u8_at(39)?,
             cell: u16_at(40)?,
+            skipped: u8_at(42)?,
         };
         if header.first_ppem == 0
             || header.first_ppem > header.last_ppem
             || header.last_ppem > MAX_TRAINED_PPEM
+            || !(header.last_ppem - header.first_ppem).is_multiple_of(u16::from(header.skipped) + 1)
         {
             return Err(Error::Malformed(format!(
-                "table 'Nfrt' claims sizes {}–{} ppem",
-                header.first_ppem, header.last_ppem
+                "table 'Nfrt' claims sizes {}–{} ppem with {} left out between each two; convert the font again",
+                header.first_ppem, header.last_ppem, header.skipped
             )));
         }
         let count = usize::from(u16_at(10)?);

@@ -95,7 +95,7 @@ fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, dictionary: usi
     out.extend(header.steps.to_be_bytes());
     out.extend([header.knots, header.rank]);
     out.extend(header.cell.to_be_bytes());
-    out.extend([0, 0]);
+    out.extend([header.skipped, 0]);
     debug_assert_eq!(out.len(), HEADER_LEN);
 }
 
