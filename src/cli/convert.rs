@@ -91,6 +91,7 @@ struct Written<'r> {
 struct WrittenGlyph {
     gid: u16,
     bytes: usize,
+    composed: bool,
     mae: f64,
     bad16: f64,
 }
@@ -207,7 +208,13 @@ fn summary<'r>(
     comparison: &'r Report,
     seconds: f64,
 ) -> Written<'r> {
-    let glyph = |g: &GlyphReport| WrittenGlyph { gid: g.gid, bytes: g.bytes, mae: g.mae, bad16: g.bad16 };
+    let glyph = |g: &GlyphReport| WrittenGlyph {
+        gid: g.gid,
+        bytes: g.bytes,
+        composed: g.composed,
+        mae: g.mae,
+        bad16: g.bad16,
+    };
     let figures = &comparison.totals.neural.figures;
     Written {
         input: args.input.display().to_string(),

@@ -93,6 +93,13 @@ impl Drop for Reporter {
 }
 
 impl Progress for Reporter {
+    fn planned(&self, glyphs: usize) {
+        lock(&self.state).total = glyphs;
+        if let Some(bar) = &self.bar {
+            bar.set_length(glyphs as u64);
+        }
+    }
+
     fn glyph_done(&self, gid: u16, mae: f64) {
         let state = {
             let mut state = lock(&self.state);

@@ -2,6 +2,7 @@
 //! stage's output is a plain type that the next one takes.
 
 pub mod assemble;
+mod compose;
 mod deform;
 mod distance;
 pub mod open;

@@ -1,12 +1,14 @@
 //! The whole conversion.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
 use read_fonts::FontRef;
 
 use super::assemble::{assemble, outline_hash};
+use super::compose::Plan;
 use super::start::{Capacity, Draft};
 use super::teach::{Lesson, lesson};
 use super::teacher::{Teacher, TeacherAt};
@@ -14,9 +16,10 @@ use super::train::{Backend, Schedule, train};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
 use crate::model::Target;
-use crate::model::gridfit::{GridFit, Scale, Scratch, Weights};
-use crate::render::Bitmap;
-use crate::table::{self, GlyphModel, Header, MAX_PPEM_STEP, MAX_TRAINED_PPEM};
+use crate::model::compose::{Composed, Origin};
+use crate::model::gridfit::{GridFit, Scale, Weights};
+use crate::render::Glyph;
+use crate::table::{self, GlyphModel, Header, MAX_PPEM_STEP, MAX_TRAINED_PPEM, Table};
 
 /// Glyphs that are trained together. The result depends on it in the last digits, so that it is fixed.
 const CHUNK: usize = 2;
@@ -44,6 +47,8 @@ pub struct Options {
     pub capacity: Capacity,
     /// How long and how fast to train.
     pub schedule: Schedule,
+    /// Whether glyphs are put together from others' models where their hints do the same.
+    pub compose: bool,
 }
 
 impl Default for Options {
@@ -60,12 +65,18 @@ impl Default for Options {
             backend: Backend::default(),
             capacity: Capacity::default(),
             schedule: Schedule::default(),
+            compose: true,
         }
     }
 }
 
 /// What a conversion tells while it runs; called from several threads.
 pub trait Progress: Sync {
+    /// So many glyphs will be ready in the end: those selected, and parts of them that need models too.
+    fn planned(&self, glyphs: usize) {
+        let _ = glyphs;
+    }
+
     /// One glyph is ready: its error over all sizes (mae, 0..1).
     fn glyph_done(&self, gid: u16, mae: f64);
 
@@ -80,8 +91,10 @@ pub trait Progress: Sync {
 pub struct GlyphReport {
     /// The glyph.
     pub gid: u16,
-    /// Bytes of its model in the table.
+    /// Bytes of its model in the table, or of the list of its parts.
     pub bytes: usize,
+    /// Whether it is put together from others' models.
+    pub composed: bool,
     /// Mean absolute error against the teacher over all sizes, 0..1.
     pub mae: f64,
     /// Share of pixels off by more than 16/255.
@@ -93,9 +106,9 @@ pub struct GlyphReport {
 pub struct Conversion {
     /// The new font file.
     pub font: Vec<u8>,
-    /// A line for each glyph, in order.
+    /// A line for each glyph of the table, in order: those selected, and parts of them.
     pub glyphs: Vec<GlyphReport>,
-    /// The sums over all glyphs and sizes.
+    /// The sums over all selected glyphs and sizes.
     pub sums: Sums,
     /// The length of the `Nfrt` table.
     pub table_bytes: usize,
@@ -132,25 +145,35 @@ pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Resu
     let sizes = (0..scale.sizes())
         .map(|size| teacher.at(scale.ppem_of(size) as u16))
         .collect::<Result<Vec<_>, _>>()?;
-    let trained = train_all(&teacher, &sizes, scale, options, progress)?;
-    let mut sums = Sums::default();
-    trained.iter().for_each(|t| sums.merge(&t.sums));
-    let figures: Vec<_> = trained.iter().map(|t| t.sums.figures()).collect();
+    let plan = if options.compose {
+        Plan::find(&font, &teacher, &sizes, scale, &options.gids)?
+    } else {
+        Plan::of_models(&options.gids)
+    };
+    progress.planned(plan.models.len() + plan.composed.len());
+    let trained = train_all(&teacher, &sizes, scale, options, &plan.models, progress)?;
+    let mut judged: BTreeMap<u16, Sums> = trained.iter().map(|t| (t.gid, t.sums)).collect();
     let models: Vec<GlyphModel> =
         trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
-    let (table, lengths) = table::write(&header, &models, scale)?;
-    let glyphs = models.iter().zip(lengths).zip(figures).map(|((model, bytes), figures)| GlyphReport {
-        gid: model.gid,
-        bytes,
-        mae: figures.mae,
-        bad16: figures.bad16,
-    });
+    judged.extend(judge_composed(&teacher, &sizes, scale, &models, &plan.composed, progress)?);
+    let (table, _) = table::write(&header, &models, &plan.composed, scale)?;
+    let mut sums = Sums::default();
+    options.gids.iter().filter_map(|gid| judged.get(gid)).for_each(|s| sums.merge(s));
     Ok(Conversion {
         font: assemble(&font, &table)?,
-        glyphs: glyphs.collect(),
+        glyphs: reports(&Table::parse(&table)?, &judged)?,
         sums,
         table_bytes: table.len(),
     })
+}
+
+fn reports(table: &Table<'_>, judged: &BTreeMap<u16, Sums>) -> Result<Vec<GlyphReport>, Error> {
+    let report = |(&gid, sums): (&u16, &Sums)| {
+        let (figures, composed) = (sums.figures(), table.is_composed(gid));
+        let bytes = table.model_len(gid)?;
+        Ok(GlyphReport { gid, bytes, composed, mae: figures.mae, bad16: figures.bad16 })
+    };
+    judged.iter().map(report).collect()
 }
 
 fn check(options: &Options) -> Result<(), Error> {
@@ -192,9 +215,10 @@ fn train_all(
     sizes: &[TeacherAt<'_, '_>],
     scale: Scale,
     options: &Options,
+    gids: &[u16],
     progress: &dyn Progress,
 ) -> Result<Vec<Trained>, Error> {
-    let chunks: Vec<&[u16]> = options.gids.chunks(CHUNK).collect();
+    let chunks: Vec<&[u16]> = gids.chunks(CHUNK).collect();
     let done: Vec<Slot> = chunks.iter().map(|_| Mutex::default()).collect();
     let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
     std::thread::scope(|scope| {
@@ -212,7 +236,7 @@ fn train_all(
             });
         }
     });
-    let mut trained = Vec::with_capacity(options.gids.len());
+    let mut trained = Vec::with_capacity(gids.len());
     let mut results: Vec<_> = done.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect();
     // Of several failures the first glyph's is told, whichever thread met it.
     if let Some(k) = results.iter().position(Result::is_err) {
@@ -261,14 +285,45 @@ fn train_chunk(
 
 /// Draws what will be stored and compares it with the lesson.
 fn judge(lesson: &Lesson, weights: &Weights, scale: Scale) -> Result<Sums, Error> {
-    let model = GridFit::new(weights, scale)?;
-    let (mut sums, mut scratch) = (Sums::default(), Scratch::default());
+    let model = Arc::new(GridFit::new(weights, scale)?);
+    compare(lesson, &Glyph::of_model(model, scale))
+}
+
+fn compare(lesson: &Lesson, glyph: &Glyph) -> Result<Sums, Error> {
+    let mut sums = Sums::default();
     for hinted in &lesson.sizes {
-        let ppem = f32::from(hinted.ppem);
-        let placement = model.placement(ppem)?;
-        let mut pixels = vec![0; placement.area()];
-        model.draw(ppem, placement, &mut scratch, &mut pixels);
-        sums.add(&hinted.bitmap, &Bitmap { placement, pixels });
+        sums.add(&hinted.bitmap, &glyph.render(f32::from(hinted.ppem))?);
     }
     Ok(sums)
+}
+
+/// Draws the glyphs that are put together from models and compares them with their own lessons.
+fn judge_composed(
+    teacher: &Teacher<'_>,
+    sizes: &[TeacherAt<'_, '_>],
+    scale: Scale,
+    models: &[GlyphModel],
+    composed: &[Composed],
+    progress: &dyn Progress,
+) -> Result<Vec<(u16, Sums)>, Error> {
+    let parts: BTreeSet<u16> = composed.iter().flat_map(|glyph| &glyph.parts).map(|part| part.gid).collect();
+    let parts = models
+        .iter()
+        .filter(|model| parts.contains(&model.gid))
+        .map(|model| Ok((model.gid, Arc::new(GridFit::new(&model.weights, scale)?))))
+        .collect::<Result<BTreeMap<_, _>, Error>>()?;
+    let judge = |glyph: &Composed| {
+        let lesson = lesson(teacher, sizes, glyph.gid)?;
+        if let Some(complaint) = &lesson.complaint {
+            progress.warn(complaint);
+        }
+        let placed = glyph.parts.iter().map(|part| {
+            let model = parts.get(&part.gid).ok_or(Error::MissingGlyph(part.gid))?;
+            Ok((model.clone(), Origin::new(part, scale)?))
+        });
+        let sums = compare(&lesson, &Glyph::of_parts(placed.collect::<Result<_, Error>>()?))?;
+        progress.glyph_done(glyph.gid, sums.figures().mae);
+        Ok((glyph.gid, sums))
+    };
+    composed.iter().map(judge).collect()
 }

@@ -1,10 +1,12 @@
 //! The `Nfrt` table: layout, zero-copy reader, writer. `spec/nfrt.md` describes the bytes.
 
 pub mod codec;
+mod composed;
 mod reader;
 #[cfg(feature = "convert")]
 mod writer;
 
+pub use composed::Gids;
 pub use reader::{ModelDecoder, Table};
 #[cfg(feature = "convert")]
 pub use writer::{GlyphModel, write};
@@ -20,13 +22,17 @@ pub const MAJOR_VERSION: u16 = 1;
 /// Additions that older readers can ignore count this up.
 pub const MINOR_VERSION: u16 = 0;
 /// Bytes before the arrays.
-pub(crate) const HEADER_LEN: usize = 44;
+pub(crate) const HEADER_LEN: usize = 56;
 /// The four bytes that begin a zstd frame; they are left out of the table.
 pub(crate) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
 /// No model decompresses to more than this.
 pub(crate) const MAX_MODEL_BYTES: usize = 1 << 16;
 /// No zstd dictionary is larger than this.
 pub(crate) const MAX_DICTIONARY_BYTES: usize = 1 << 16;
+/// No glyph is put together from more parts than this.
+pub const MAX_PARTS: usize = 16;
+/// The places of parts that snap take no more than this, unpacked.
+pub const MAX_SNAP_BYTES: usize = 1 << 20;
 /// The largest trained size, in pixels per em.
 pub const MAX_TRAINED_PPEM: u16 = 1024;
 /// The largest step between trained sizes: the table stores it less one, in a byte.
