@@ -14,11 +14,12 @@ use super::progress::{Reporter, Verbosity};
 use crate::compare::fonts::FontPair;
 use crate::compare::report::{Report, glyphs};
 use crate::convert::open::{has_models, open};
+use crate::convert::partial::Partial;
 use crate::convert::ppem::PpemList;
 use crate::convert::select::{glyph_count, glyph_names};
 use crate::convert::teacher::Teacher;
 use crate::convert::train::Backend;
-use crate::convert::{Conversion, GlyphReport, Options, convert};
+use crate::convert::{Conversion, GlyphReport, Options, resume};
 use crate::model::Target;
 
 /// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
@@ -56,6 +57,13 @@ pub struct Args {
     /// The font's index, if the input is a collection
     #[arg(long, value_name = "N", default_value_t = 0)]
     index: u32,
+    /// Go on where an interrupted conversion to the same output stopped
+    ///
+    /// While it runs, a conversion keeps the glyphs that are ready in OUTPUT.partial. If it is interrupted, the
+    /// same command with --resume trains only the others, and the font comes out the same. The input, the options
+    /// and the version have to be the same, but --jobs may change. The file is deleted in the end.
+    #[arg(long)]
+    resume: bool,
     /// Write a report as JSON
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
@@ -120,7 +128,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let output = Output::new(&args.output)?;
     let report = args.report.as_deref().map(Output::new).transpose()?;
 
-    let converted = convert(&input, &options, &reporter);
+    let partial = output.partial();
+    let partial = partial.map(|path| Partial::open(&path, &input, &options, args.resume)).transpose()?;
+    if let Some(found) = partial.as_ref().map(Partial::found).filter(|found| *found > 0) {
+        reporter.note(&format!("going on after {}", glyphs(found)));
+    }
+
+    let converted = resume(&input, &options, &reporter, partial.as_ref());
     let elapsed = reporter.elapsed();
     drop(reporter);
     let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
@@ -133,6 +147,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         args.jobs,
     )?;
     output.write(&conversion.font)?;
+    partial.map(Partial::remove).transpose()?;
 
     let written = summary(args, &input, &conversion, &comparison, elapsed.as_secs_f64());
     if let Some(file) = report {

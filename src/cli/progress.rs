@@ -76,6 +76,13 @@ impl Reporter {
         lock(&self.state).start.elapsed()
     }
 
+    /// Says something, unless nothing is to be said.
+    pub(super) fn note(&self, text: &str) {
+        if self.verbosity != Verbosity::Quiet {
+            self.line(text);
+        }
+    }
+
     fn line(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.println(text),
@@ -118,9 +125,7 @@ impl Progress for Reporter {
     }
 
     fn warn(&self, message: &str) {
-        if self.verbosity != Verbosity::Quiet {
-            self.line(&format!("warning: {message}"));
-        }
+        self.note(&format!("warning: {message}"));
     }
 }
 

@@ -24,8 +24,9 @@ const MAX_POINT_ERROR: f32 = 1.0 / 32.0;
 /// The parts' exact bitmaps may add up to something this far from the glyph's (mae over all sizes): a fraction of
 /// what models are off by themselves. Parts that overlap a lot are.
 const MAX_SUM_ERROR: f64 = 0.0005;
-/// A glyph that nobody selected gets a model if at least this many others save theirs by it.
-const MIN_USES: usize = 2;
+/// So many parts of a glyph may need a model that nobody selected and no other glyph uses: a part is simpler than
+/// the whole, but two are not.
+const MAX_OWN_PARTS: usize = 1;
 /// Components within components, at most. `maxp` allows 16; fonts have two or three.
 const MAX_DEPTH: usize = 16;
 
@@ -80,7 +81,7 @@ impl Plan {
         Ok(Self::of_parts(gids, fitting))
     }
 
-    /// Leaves out what would need models that nobody selected and that save too few.
+    /// Leaves out what would need more models than it saves.
     fn of_parts(gids: &[u16], mut fitting: BTreeMap<u16, Vec<Part>>) -> Self {
         let selected: BTreeSet<u16> = gids.iter().copied().collect();
         loop {
@@ -91,7 +92,9 @@ impl Plan {
             }
             let before = fitting.len();
             fitting.retain(|_, parts| {
-                parts.iter().all(|part| selected.contains(&part.gid) || uses[&part.gid] >= MIN_USES)
+                let own: BTreeSet<u16> = parts.iter().map(|part| part.gid).collect();
+                let own = own.iter().filter(|part| !selected.contains(part) && uses[part] == 1);
+                own.count() <= MAX_OWN_PARTS
             });
             if fitting.len() == before {
                 let parts = uses.into_keys();

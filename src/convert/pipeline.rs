@@ -1,28 +1,21 @@
 //! The whole conversion.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
 
 use read_fonts::FontRef;
 
 use super::assemble::{assemble, outline_hash};
 use super::compose::Plan;
-use super::start::{Capacity, Draft};
-use super::teach::{Lesson, lesson};
-use super::teacher::{Teacher, TeacherAt};
-use super::train::{Backend, Schedule, train};
+use super::course::Course;
+use super::partial::Partial;
+use super::start::Capacity;
+use super::teacher::Teacher;
+use super::train::{Backend, Schedule};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
 use crate::model::Target;
-use crate::model::compose::{Composed, Origin};
-use crate::model::gridfit::{GridFit, Scale, Weights};
-use crate::render::Glyph;
 use crate::table::{self, GlyphModel, Header, MAX_PPEM_STEP, MAX_TRAINED_PPEM, Table};
-
-/// Glyphs that are trained together. The result depends on it in the last digits, so that it is fixed.
-const CHUNK: usize = 2;
 
 /// What a conversion is asked to do.
 #[derive(Debug, Clone)]
@@ -114,16 +107,6 @@ pub struct Conversion {
     pub table_bytes: usize,
 }
 
-/// Where a thread leaves a chunk's result.
-type Slot = Mutex<Option<Result<Vec<Trained>, Error>>>;
-
-/// A trained glyph with what it differs from its teacher by.
-struct Trained {
-    gid: u16,
-    weights: Weights,
-    sums: Sums,
-}
-
 /// Converts a font: trains a model for each glyph and writes a font that carries them instead of hints.
 ///
 /// # Errors
@@ -131,6 +114,21 @@ struct Trained {
 /// `Malformed` or `Unsupported` for a font that cannot teach, `MissingGlyph` for a glyph that it does not
 /// have, `InvalidParameter` for options that make no sense.
 pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Result<Conversion, Error> {
+    resume(input, options, progress, None)
+}
+
+/// Converts a font as [`convert`] does. Glyphs that are ready are kept in `partial`, and those that it holds
+/// already are not trained again.
+///
+/// # Errors
+///
+/// As [`convert`], and `Io` if the work file cannot be written.
+pub fn resume(
+    input: &[u8],
+    options: &Options,
+    progress: &dyn Progress,
+    partial: Option<&Partial>,
+) -> Result<Conversion, Error> {
     check(options)?;
     let font = crate::render::open(input, options.index)?;
     if font.table_data(table::TAG).is_some() {
@@ -151,11 +149,12 @@ pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Resu
         Plan::of_models(&options.gids)
     };
     progress.planned(plan.models.len() + plan.composed.len());
-    let trained = train_all(&teacher, &sizes, scale, options, &plan.models, progress)?;
+    let course = Course { teacher: &teacher, sizes: &sizes, scale, options, progress, partial };
+    let trained = course.train_all(&plan.models)?;
     let mut judged: BTreeMap<u16, Sums> = trained.iter().map(|t| (t.gid, t.sums)).collect();
     let models: Vec<GlyphModel> =
         trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
-    judged.extend(judge_composed(&teacher, &sizes, scale, &models, &plan.composed, progress)?);
+    judged.extend(course.judge_composed(&models, &plan.composed)?);
     let (table, _) = table::write(&header, &models, &plan.composed, scale)?;
     let mut sums = Sums::default();
     options.gids.iter().filter_map(|gid| judged.get(gid)).for_each(|s| sums.merge(s));
@@ -207,123 +206,4 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
         rank: options.capacity.rank as u8,
         cell: (options.capacity.cell * 10_000.0).round() as u16,
     })
-}
-
-/// Trains chunk after chunk, on `options.jobs` threads. The first failure stops them all.
-fn train_all(
-    teacher: &Teacher<'_>,
-    sizes: &[TeacherAt<'_, '_>],
-    scale: Scale,
-    options: &Options,
-    gids: &[u16],
-    progress: &dyn Progress,
-) -> Result<Vec<Trained>, Error> {
-    let chunks: Vec<&[u16]> = gids.chunks(CHUNK).collect();
-    let done: Vec<Slot> = chunks.iter().map(|_| Mutex::default()).collect();
-    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-    std::thread::scope(|scope| {
-        for _ in 0..options.jobs.clamp(1, chunks.len()) {
-            scope.spawn(|| {
-                while !failed.load(Ordering::Relaxed) {
-                    let k = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(gids) = chunks.get(k) else { break };
-                    let result = train_chunk(teacher, sizes, scale, options, gids, progress);
-                    failed.fetch_or(result.is_err(), Ordering::Relaxed);
-                    if let Ok(mut slot) = done[k].lock() {
-                        *slot = Some(result);
-                    }
-                }
-            });
-        }
-    });
-    let mut trained = Vec::with_capacity(gids.len());
-    let mut results: Vec<_> = done.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect();
-    // Of several failures the first glyph's is told, whichever thread met it.
-    if let Some(k) = results.iter().position(Result::is_err) {
-        results.swap(0, k);
-    }
-    for result in results {
-        trained.extend(result?);
-    }
-    Ok(trained)
-}
-
-fn train_chunk(
-    teacher: &Teacher<'_>,
-    sizes: &[TeacherAt<'_, '_>],
-    scale: Scale,
-    options: &Options,
-    gids: &[u16],
-    progress: &dyn Progress,
-) -> Result<Vec<Trained>, Error> {
-    let lessons = gids.iter().map(|gid| lesson(teacher, sizes, *gid)).collect::<Result<Vec<_>, _>>()?;
-    for complaint in lessons.iter().filter_map(|l| l.complaint.as_deref()) {
-        progress.warn(complaint);
-    }
-    let (inked, mut drafts): (Vec<&Lesson>, Vec<Draft>) = lessons
-        .iter()
-        .filter(|lesson| !lesson.outline.points.is_empty())
-        .map(|lesson| {
-            (lesson, Draft::from_lesson(lesson, scale, options.target, options.capacity, options.seed))
-        })
-        .unzip();
-    if !inked.is_empty() {
-        train(&inked, &mut drafts, scale, options.schedule, options.backend)?;
-    }
-    let mut drafts = drafts.into_iter();
-    lessons
-        .iter()
-        .map(|lesson| {
-            let blank = lesson.outline.points.is_empty();
-            let weights = if blank { None } else { drafts.next() }.unwrap_or_default().quantise();
-            let sums = judge(lesson, &weights, scale)?;
-            progress.glyph_done(lesson.gid, sums.figures().mae);
-            Ok(Trained { gid: lesson.gid, weights, sums })
-        })
-        .collect()
-}
-
-/// Draws what will be stored and compares it with the lesson.
-fn judge(lesson: &Lesson, weights: &Weights, scale: Scale) -> Result<Sums, Error> {
-    let model = Arc::new(GridFit::new(weights, scale)?);
-    compare(lesson, &Glyph::of_model(model, scale))
-}
-
-fn compare(lesson: &Lesson, glyph: &Glyph) -> Result<Sums, Error> {
-    let mut sums = Sums::default();
-    for hinted in &lesson.sizes {
-        sums.add(&hinted.bitmap, &glyph.render(f32::from(hinted.ppem))?);
-    }
-    Ok(sums)
-}
-
-/// Draws the glyphs that are put together from models and compares them with their own lessons.
-fn judge_composed(
-    teacher: &Teacher<'_>,
-    sizes: &[TeacherAt<'_, '_>],
-    scale: Scale,
-    models: &[GlyphModel],
-    composed: &[Composed],
-    progress: &dyn Progress,
-) -> Result<Vec<(u16, Sums)>, Error> {
-    let parts: BTreeSet<u16> = composed.iter().flat_map(|glyph| &glyph.parts).map(|part| part.gid).collect();
-    let parts = models
-        .iter()
-        .filter(|model| parts.contains(&model.gid))
-        .map(|model| Ok((model.gid, Arc::new(GridFit::new(&model.weights, scale)?))))
-        .collect::<Result<BTreeMap<_, _>, Error>>()?;
-    let judge = |glyph: &Composed| {
-        let lesson = lesson(teacher, sizes, glyph.gid)?;
-        if let Some(complaint) = &lesson.complaint {
-            progress.warn(complaint);
-        }
-        let placed = glyph.parts.iter().map(|part| {
-            let model = parts.get(&part.gid).ok_or(Error::MissingGlyph(part.gid))?;
-            Ok((model.clone(), Origin::new(part, scale)?))
-        });
-        let sums = compare(&lesson, &Glyph::of_parts(placed.collect::<Result<_, Error>>()?))?;
-        progress.glyph_done(glyph.gid, sums.figures().mae);
-        Ok((glyph.gid, sums))
-    };
-    composed.iter().map(judge).collect()
 }

@@ -75,6 +75,9 @@ impl Header {
     }
 }
 
+/// The FNV-1a hash of nothing.
+pub const FNV_BASIS: u64 = 0xCBF2_9CE4_8422_2325;
+
 /// FNV-1a, 64 bits, over a byte string; `state` is the hash so far.
 pub fn fnv1a(state: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(state, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3))
@@ -83,5 +86,5 @@ pub fn fnv1a(state: u64, bytes: &[u8]) -> u64 {
 /// The value that ties a table to its font's outlines: FNV-1a over `unitsPerEm` (big-endian) and the bytes of
 /// the `glyf` table.
 pub fn outline_hash(units_per_em: u16, glyf: &[u8]) -> u64 {
-    fnv1a(fnv1a(0xCBF2_9CE4_8422_2325, &units_per_em.to_be_bytes()), glyf)
+    fnv1a(fnv1a(FNV_BASIS, &units_per_em.to_be_bytes()), glyf)
 }
