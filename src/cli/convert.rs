@@ -57,6 +57,11 @@ pub struct Args {
     /// The font's index, if the input is a collection
     #[arg(long, value_name = "N", default_value_t = 0)]
     index: u32,
+    /// Leave out the outlines of the glyphs that get models, for programs that draw only with those
+    ///
+    /// Metrics, characters and layout stay. Everything else draws these glyphs as blanks.
+    #[arg(long)]
+    drop_outlines: bool,
     /// Go on where an interrupted conversion to the same output stopped
     ///
     /// While it runs, a conversion keeps the glyphs that are ready in OUTPUT.partial. If it is interrupted, the
@@ -86,6 +91,8 @@ struct Written<'r> {
     glyphs: Vec<WrittenGlyph>,
     table_bytes: usize,
     bytes_per_glyph: f64,
+    /// The hint programs that the table stands in place of.
+    hint_bytes: WrittenHints,
     input_bytes: usize,
     output_bytes: usize,
     mae: f64,
@@ -93,6 +100,15 @@ struct Written<'r> {
     seconds: f64,
     /// The comparison of the written font with its original.
     comparison: &'r Report,
+}
+
+#[derive(Debug, Serialize)]
+struct WrittenHints {
+    glyph_programs: usize,
+    fpgm: usize,
+    prep: usize,
+    cvt: usize,
+    total: usize,
 }
 
 #[derive(Debug, Serialize)]
@@ -211,6 +227,7 @@ fn prepare(
         seed: args.seed,
         jobs: args.jobs,
         backend: args.backend,
+        drop_outlines: args.drop_outlines,
         ..Options::default()
     };
     Ok((options, reporter))
@@ -231,6 +248,7 @@ fn summary<'r>(
         bad16: g.bad16,
     };
     let figures = &comparison.totals.neural.figures;
+    let hints = &conversion.hint_bytes;
     Written {
         input: args.input.display().to_string(),
         output: args.output.display().to_string(),
@@ -240,6 +258,13 @@ fn summary<'r>(
         glyphs: conversion.glyphs.iter().map(glyph).collect(),
         table_bytes: conversion.table_bytes,
         bytes_per_glyph: comparison.subject.bytes_per_glyph,
+        hint_bytes: WrittenHints {
+            glyph_programs: hints.glyph_programs,
+            fpgm: hints.fpgm,
+            prep: hints.prep,
+            cvt: hints.cvt,
+            total: hints.total(),
+        },
         input_bytes: input.len(),
         output_bytes: conversion.font.len(),
         mae: figures.mae,
@@ -252,9 +277,25 @@ fn summary<'r>(
 fn print(written: &Written<'_>) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let unhinted = &written.comparison.totals.unhinted.figures;
-    writeln!(out, "{}: {} at {} ppem", written.output, glyphs(written.glyphs.len()), written.ppem)?;
+    let composed = match written.glyphs.iter().filter(|glyph| glyph.composed).count() {
+        0 => String::new(),
+        count => format!(", {count} of them put together from others"),
+    };
+    let count = glyphs(written.glyphs.len());
+    writeln!(out, "{}: {count} at {} ppem{composed}", written.output, written.ppem)?;
     writeln!(out, "table   {} bytes, {:.1} per glyph", written.table_bytes, written.bytes_per_glyph)?;
-    writeln!(out, "file    {} bytes, from {}", written.output_bytes, written.input_bytes)?;
+    let hints = &written.hint_bytes;
+    writeln!(
+        out,
+        "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
+        hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
+    )?;
+    let percent = 100.0 * written.output_bytes as f64 / written.input_bytes.max(1) as f64;
+    writeln!(
+        out,
+        "file    {} bytes, {percent:.1} % of the original's {}",
+        written.output_bytes, written.input_bytes
+    )?;
     writeln!(out, "mae     {:.5} (unhinted {:.5})", written.mae, unhinted.mae)?;
     writeln!(out, "bad16   {:.2} % (unhinted {:.2} %)", 100.0 * written.bad16, 100.0 * unhinted.bad16)?;
     writeln!(out, "time    {:.1} s", written.seconds)?;

@@ -33,6 +33,7 @@ struct Info {
     bytes_per_glyph: f64,
     file_bytes: usize,
     outlines_match: bool,
+    outlines_dropped: bool,
 }
 
 /// Runs `nfr info`.
@@ -58,6 +59,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         bytes_per_glyph: font.table_len() as f64 / glyphs_with_models.max(1) as f64,
         file_bytes: data.len(),
         outlines_match: font.outlines_match(),
+        outlines_dropped: font.outlines_dropped(),
     };
     let mut out = io::stdout().lock();
     if args.json {
@@ -72,10 +74,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     writeln!(out, "glyphs          {} of {} have models", info.glyphs_with_models, info.glyphs)?;
     writeln!(out, "table           {} bytes, {:.1} per glyph", info.table_bytes, info.bytes_per_glyph)?;
     writeln!(out, "file            {} bytes", info.file_bytes)?;
-    let outlines = if info.outlines_match {
-        "those that the models were trained from"
-    } else {
-        "changed after training; convert the font again"
+    let outlines = match (info.outlines_dropped, info.outlines_match) {
+        (true, _) => "dropped for the glyphs that have models",
+        (false, true) => "those that the models were trained from",
+        (false, false) => "changed after training; convert the font again",
     };
     writeln!(out, "outlines        {outlines}")?;
     Ok(())

@@ -291,3 +291,53 @@ fn fit_places(places: &[f32], offset: i16, scale: Scale) -> Option<Vec<i8>> {
     };
     places.iter().enumerate().map(snap).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 10, last_ppem: 12, step: 1 };
+
+    fn plan(gids: &[u16], fitting: &[(u16, &[u16])]) -> (Vec<u16>, Vec<u16>) {
+        let part = |gid: &u16| Part { gid: *gid, ..Part::default() };
+        let fitting = fitting.iter().map(|(gid, parts)| (*gid, parts.iter().map(part).collect())).collect();
+        let plan = Plan::of_parts(gids, fitting);
+        (plan.models, plan.composed.into_iter().map(|glyph| glyph.gid).collect())
+    }
+
+    #[test]
+    fn parts_that_are_selected_are_used() {
+        assert_eq!(plan(&[1, 2, 5], &[(5, &[1, 2])]), (vec![1, 2], vec![5]));
+    }
+
+    #[test]
+    fn a_part_that_is_not_selected_gets_a_model_if_that_saves_one() {
+        // One more for one less.
+        assert_eq!(plan(&[1, 5], &[(5, &[1, 2])]), (vec![1, 2], vec![5]));
+        // Two more for one less.
+        assert_eq!(plan(&[5], &[(5, &[1, 2])]), (vec![5], vec![]));
+        // Three more for two less, but shared.
+        assert_eq!(plan(&[5, 6], &[(5, &[1, 2]), (6, &[1, 3])]), (vec![1, 2, 3], vec![5, 6]));
+    }
+
+    #[test]
+    fn a_part_that_is_used_twice_by_one_glyph_is_used_by_one() {
+        assert_eq!(plan(&[5], &[(5, &[1, 1])]), (vec![1], vec![5]));
+    }
+
+    #[test]
+    fn what_falls_away_takes_what_leans_on_it_along() {
+        // 7 would need two parts of its own, and then 2 is used by 6 alone.
+        let fitting: &[(u16, &[u16])] = &[(6, &[1, 2]), (7, &[2, 3, 4])];
+        assert_eq!(plan(&[6, 7], fitting), (vec![6, 7], vec![]));
+    }
+
+    #[test]
+    fn a_place_that_is_neither_plain_nor_a_whole_pixel_does_not_fit() {
+        // Plain: 0.123 em.
+        assert_eq!(fit_places(&[1.23, 1.353, 1.476], 123, SCALE), Some(vec![]));
+        assert_eq!(fit_places(&[1.0, 2.0, 1.0], 123, SCALE), Some(vec![0, 1, 0]));
+        assert_eq!(fit_places(&[1.0, 1.5, 1.0], 123, SCALE), None);
+        assert_eq!(fit_places(&[1.0, 200.0, 1.0], 123, SCALE), None);
+    }
+}

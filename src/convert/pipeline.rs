@@ -1,11 +1,11 @@
 //! The whole conversion.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 use read_fonts::FontRef;
 
-use super::assemble::{assemble, outline_hash};
+use super::assemble::{HintBytes, assemble, hint_bytes, outline_hash};
 use super::compose::Plan;
 use super::course::Course;
 use super::partial::Partial;
@@ -42,6 +42,8 @@ pub struct Options {
     pub schedule: Schedule,
     /// Whether glyphs are put together from others' models where their hints do the same.
     pub compose: bool,
+    /// Whether the outlines of the glyphs that have models are left out of the font.
+    pub drop_outlines: bool,
 }
 
 impl Default for Options {
@@ -59,6 +61,7 @@ impl Default for Options {
             capacity: Capacity::default(),
             schedule: Schedule::default(),
             compose: true,
+            drop_outlines: false,
         }
     }
 }
@@ -105,6 +108,8 @@ pub struct Conversion {
     pub sums: Sums,
     /// The length of the `Nfrt` table.
     pub table_bytes: usize,
+    /// The hint programs of the original, which the font does without.
+    pub hint_bytes: HintBytes,
 }
 
 /// Converts a font: trains a model for each glyph and writes a font that carries them instead of hints.
@@ -158,8 +163,10 @@ pub fn resume(
     let (table, _) = table::write(&header, &models, &plan.composed, scale)?;
     let mut sums = Sums::default();
     options.gids.iter().filter_map(|gid| judged.get(gid)).for_each(|s| sums.merge(s));
+    let dropped = if options.drop_outlines { judged.keys().copied().collect() } else { BTreeSet::new() };
     Ok(Conversion {
-        font: assemble(&font, &table)?,
+        font: assemble(&font, &table, &dropped)?,
+        hint_bytes: hint_bytes(&font)?,
         glyphs: reports(&Table::parse(&table)?, &judged)?,
         sums,
         table_bytes: table.len(),
@@ -200,6 +207,7 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
         last_ppem: options.ppem.clone().step_by(options.ppem_step.into()).last().unwrap_or(0),
         skipped: (options.ppem_step - 1) as u8,
         outline_hash: outline_hash(font)?,
+        outlines_dropped: options.drop_outlines,
         seed: options.seed,
         steps: options.schedule.steps as u16,
         knots: options.capacity.knots as u8,

@@ -123,8 +123,17 @@ impl<'a> Font<'a> {
         f32::from(units) * ppem / f32::from(self.scale.units_per_em)
     }
 
+    /// Whether the glyphs that have models have no outlines in this font.
+    pub fn outlines_dropped(&self) -> bool {
+        self.header().outlines_dropped
+    }
+
     /// Whether the outlines in this font are the ones that the models were trained from. Reads all of them.
+    /// Where they were dropped, there is nothing that could differ.
     pub fn outlines_match(&self) -> bool {
+        if self.outlines_dropped() {
+            return true;
+        }
         let glyf = self.font.table_data(Tag::new(b"glyf"));
         glyf.is_some_and(|glyf| {
             table::outline_hash(self.scale.units_per_em, glyf.as_bytes()) == self.header().outline_hash

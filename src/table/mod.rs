@@ -29,6 +29,8 @@ pub(crate) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
 pub(crate) const MAX_MODEL_BYTES: usize = 1 << 16;
 /// No zstd dictionary is larger than this.
 pub(crate) const MAX_DICTIONARY_BYTES: usize = 1 << 16;
+/// The flag that says that outlines were dropped.
+pub(crate) const OUTLINES_DROPPED: u8 = 1;
 /// No glyph is put together from more parts than this.
 pub const MAX_PARTS: usize = 16;
 /// The places of parts that snap take no more than this, unpacked.
@@ -51,6 +53,8 @@ pub struct Header {
     pub skipped: u8,
     /// FNV-1a of the outlines that the models were trained from.
     pub outline_hash: u64,
+    /// Whether the font has no outlines of the glyphs that it has models for.
+    pub outlines_dropped: bool,
     /// The seed of the training.
     pub seed: u64,
     /// Optimiser steps.

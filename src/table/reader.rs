@@ -6,7 +6,7 @@ use ruzstd::decoding::{BlockDecodingStrategy, Dictionary, FrameDecoder};
 
 use super::{
     HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MAX_SNAP_BYTES,
-    MAX_TRAINED_PPEM, ZSTD_MAGIC, codec,
+    MAX_TRAINED_PPEM, OUTLINES_DROPPED, ZSTD_MAGIC, codec,
     composed::{ComposedGlyphs, Gids},
 };
 use crate::error::Error;
@@ -60,6 +60,7 @@ impl<'a> Table<'a> {
             first_ppem: u16_at(6)?,
             last_ppem: u16_at(8)?,
             outline_hash: u64_at(12)?,
+            outlines_dropped: u8_at(5)? & OUTLINES_DROPPED != 0,
             seed: u64_at(20)?,
             steps: u16_at(36)?,
             knots: u8_at(38)?,

@@ -4,8 +4,10 @@ use std::collections::HashMap;
 
 use super::composed::{COUNTS_AT, NO_SNAPS};
 use super::{
+use super::{
     HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MAX_PARTS, MAX_SNAP_BYTES,
-    MINOR_VERSION, ZSTD_MAGIC, codec,
+    MINOR_VERSION, OUTLINES_DROPPED, ZSTD_MAGIC, codec,
+};
 };
 use crate::error::Error;
 use crate::model::Target;
@@ -96,7 +98,7 @@ fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, dictionary: usi
     };
     out.extend(MAJOR_VERSION.to_be_bytes());
     out.extend(MINOR_VERSION.to_be_bytes());
-    out.extend([target, 0]);
+    out.extend([target, if header.outlines_dropped { OUTLINES_DROPPED } else { 0 }]);
     out.extend(header.first_ppem.to_be_bytes());
     out.extend(header.last_ppem.to_be_bytes());
     out.extend((glyphs as u16).to_be_bytes());
