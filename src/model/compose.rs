@@ -3,6 +3,9 @@
 use super::gridfit::Scale;
 use crate::error::Error;
 
+/// What does not snap to pixels stands on a grid of this fraction of a pixel, that of scaled outlines.
+const GRID: f32 = 64.0;
+
 /// A glyph that has no model of its own.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Composed {
@@ -19,7 +22,7 @@ pub struct Part {
     pub gid: u16,
     /// How far it is moved along x and y, in font units.
     pub offset: [i16; 2],
-    /// For x and y: empty if the part stands exactly there at any size. Otherwise it stands on a whole pixel,
+    /// For x and y: empty if the part stands there at any size, to 1/64 pixel. Otherwise it stands on a whole pixel,
     /// and this says for each trained size how many pixels from [`snapped`].
     pub snaps: [Vec<i8>; 2],
 }
@@ -76,11 +79,11 @@ impl Origin {
     pub(crate) fn at(&self, ppem: f32) -> [f32; 2] {
         let (size, next, share, strength) = self.scale.mix(ppem);
         [0, 1].map(|axis| {
-            let moved = match (self.moves[axis].get(size), self.moves[axis].get(next)) {
-                (Some(a), Some(b)) => (a + (b - a) * share) * strength,
-                _ => 0.0,
-            };
-            self.offset[axis] * ppem + moved
+            let plain = self.offset[axis] * ppem;
+            match (self.moves[axis].get(size), self.moves[axis].get(next)) {
+                (Some(a), Some(b)) => plain + (a + (b - a) * share) * strength,
+                _ => (plain * GRID + 0.5).floor() / GRID,
+            }
         })
     }
 
@@ -111,7 +114,7 @@ mod tests {
         let origin = Origin::new(&part, SCALE).unwrap();
         for (ppem, y) in [(10.0, 3.0), (11.0, 4.0), (12.0, 2.0)] {
             let [at_x, at_y] = origin.at(ppem);
-            assert!((at_x - 0.123 * ppem).abs() < 1e-5 && (at_y - y).abs() < 1e-5, "{ppem}: {at_x}, {at_y}");
+            assert!((at_x - (0.123 * ppem * 64.0).round() / 64.0).abs() < 1e-5 && (at_y - y).abs() < 1e-5, "{ppem}: {at_x}, {at_y}");
         }
         assert!((origin.at(10.5)[1] - (2.6 + 0.4 + 2.86 + 1.14) / 2.0).abs() < 1e-5);
         assert!((origin.at(100.0)[1] - 26.0).abs() < 1e-4, "snapping does not fade");
