@@ -114,7 +114,10 @@ mod tests {
         let origin = Origin::new(&part, SCALE).unwrap();
         for (ppem, y) in [(10.0, 3.0), (11.0, 4.0), (12.0, 2.0)] {
             let [at_x, at_y] = origin.at(ppem);
-            assert!((at_x - (0.123 * ppem * 64.0).round() / 64.0).abs() < 1e-5 && (at_y - y).abs() < 1e-5, "{ppem}: {at_x}, {at_y}");
+            assert!(
+                (at_x - (0.123 * ppem * 64.0).round() / 64.0).abs() < 1e-5 && (at_y - y).abs() < 1e-5,
+                "{ppem}: {at_x}, {at_y}"
+            );
         }
         assert!((origin.at(10.5)[1] - (2.6 + 0.4 + 2.86 + 1.14) / 2.0).abs() < 1e-5);
         assert!((origin.at(100.0)[1] - 26.0).abs() < 1e-4, "snapping does not fade");

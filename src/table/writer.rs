@@ -4,10 +4,8 @@ use std::collections::HashMap;
 
 use super::composed::{COUNTS_AT, NO_SNAPS};
 use super::{
-use super::{
     HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MAX_PARTS, MAX_SNAP_BYTES,
     MINOR_VERSION, OUTLINES_DROPPED, ZSTD_MAGIC, codec,
-};
 };
 use crate::error::Error;
 use crate::model::Target;
@@ -126,11 +124,14 @@ fn put_composed(
     for glyph in composed {
         if glyph.parts.len() > MAX_PARTS {
             let (gid, parts) = (glyph.gid, glyph.parts.len());
-            return Err(Error::LimitExceeded(format!("glyph {gid} has {parts} parts, {MAX_PARTS} are allowed")));
+            return Err(Error::LimitExceeded(format!(
+                "glyph {gid} has {parts} parts, {MAX_PARTS} are allowed"
+            )));
         }
         for part in &glyph.parts {
-            Origin::new(part, scale)
-                .map_err(|_| Error::InvalidParameter(format!("a part of glyph {} lacks places", glyph.gid)))?;
+            Origin::new(part, scale).map_err(|_| {
+                Error::InvalidParameter(format!("a part of glyph {} lacks places", glyph.gid))
+            })?;
             let model = models.binary_search_by_key(&part.gid, |m| m.gid).map_err(|_| {
                 let (gid, part) = (glyph.gid, part.gid);
                 Error::InvalidParameter(format!("glyph {gid} has glyph {part} as a part, which has no model"))
@@ -150,7 +151,10 @@ fn put_composed(
         ends.extend(count.to_be_bytes());
     }
     if lists.len() >= usize::from(NO_SNAPS) || lists.len() * scale.sizes() > MAX_SNAP_BYTES {
-        return Err(Error::LimitExceeded(format!("{} lists of parts' places; convert fewer glyphs", lists.len())));
+        return Err(Error::LimitExceeded(format!(
+            "{} lists of parts' places; convert fewer glyphs",
+            lists.len()
+        )));
     }
     let places: Vec<u8> = lists.iter().copied().flatten().map(|place| *place as u8).collect();
     let packed = if places.is_empty() { Vec::new() } else { pack(&[places], &[])?.concat() };
