@@ -109,7 +109,8 @@ fn options_that_make_no_sense_are_wrong_usage() {
     refused(&["--ppem", "8-"], &["--ppem", "8-64"]);
     refused(&["--ppem", "0"], &["outside 1-1024"]);
     refused(&["--ppem", "20-10"], &["backwards"]);
-    refused(&["--ppem", "8,10"], &["8,10", "one range"]);
+    refused(&["--ppem", "8,10,11"], &["8,10-11", "one range"]);
+    refused(&["--train-ppem", "8,10,11"], &["--train-ppem 8,10-11", "one range"]);
     refused(&["--target", "sharp"], &["smooth, mono or lcd"]);
     refused(&["--jobs", "0"], &["--jobs", "1 or more"]);
     refused(&["--seed", "x"], &["--seed"]);

@@ -2,6 +2,8 @@
 #![cfg(feature = "convert")]
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
+
 use nfr::Error;
 use nfr::convert::assemble::{assemble, hint_bytes};
 use nfr::convert::strip::{Stripped, strip};
@@ -214,7 +216,7 @@ proptest! {
         font[..DIRECTORY_BYTES].copy_from_slice(&directory);
         damage(&mut font, &anywhere, keep);
         if let Ok(font) = FontRef::new(&font) {
-            let assembled = assemble(&font, b"models");
+            let assembled = assemble(&font, b"models", &BTreeSet::new());
             prop_assert!(assembled.is_err() || hint_bytes(&font).is_ok());
         }
     }
@@ -246,7 +248,7 @@ fn a_file_that_asks_for_a_huge_copy_of_itself_is_refused() {
         record((u32::from_be_bytes(*b"z   ") + copy).to_be_bytes(), 1, size - 1);
     }
     font.extend(&FONT[DIRECTORY_BYTES..]);
-    let error = assemble(&FontRef::new(&font).unwrap(), &[]).unwrap_err();
+    let error = assemble(&FontRef::new(&font).unwrap(), &[], &BTreeSet::new()).unwrap_err();
     assert!(matches!(error, Error::LimitExceeded(_)), "{error}");
 }
 
@@ -256,7 +258,7 @@ fn fonts_that_carry_no_truetype_outlines_are_refused() {
         let mut font = FONT.to_vec();
         let at = font[..DIRECTORY_BYTES].windows(4).position(|tag| tag == from).unwrap();
         font[at..at + 4].copy_from_slice(to);
-        assemble(&FontRef::new(&font).unwrap(), &[]).unwrap_err()
+        assemble(&FontRef::new(&font).unwrap(), &[], &BTreeSet::new()).unwrap_err()
     };
     assert!(matches!(rename(b"glyf", b"glyg"), Error::Unsupported(_)));
     assert!(matches!(rename(b"GDEF", b"CFF "), Error::Unsupported(_)));

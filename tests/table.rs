@@ -6,9 +6,12 @@ mod samples;
 
 use std::sync::LazyLock;
 
+use nfr::model::compose::{Composed, Part};
 use nfr::model::gridfit::{AxisWarp, DEFORM_NODES, Scale, Weights};
 use nfr::table::codec::{MAX_CELLS, MAX_KNOTS, MAX_RANK, decode, encode};
-use nfr::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM, ModelDecoder, TAG, Table};
+use nfr::table::{
+    self, GlyphModel, Header, MAX_PARTS, MAX_PPEM_STEP, MAX_TRAINED_PPEM, ModelDecoder, TAG, Table,
+};
 use nfr::{Error, Font, Rasterizer, Target};
 use proptest::collection::{btree_set, vec};
 use proptest::prelude::*;
@@ -63,11 +66,14 @@ fn weights(sizes: usize) -> impl Strategy<Value = Weights> {
 
 fn scale() -> impl Strategy<Value = Scale> {
     let last_size = MAX_TRAINED_PPEM;
-    (16u16..=16384, 1..=last_size, 0u16..40).prop_map(move |(units_per_em, first_ppem, more)| Scale {
-        units_per_em,
-        first_ppem,
-        last_ppem: (first_ppem + more).min(last_size),
-    })
+    (16u16..=16384, 1..=last_size, 0u16..40, 1u16..=MAX_PPEM_STEP).prop_map(
+        move |(units_per_em, first_ppem, more, step)| Scale {
+            units_per_em,
+            first_ppem,
+            last_ppem: first_ppem + more.min((last_size - first_ppem) / step) * step,
+            step,
+        },
+    )
 }
 
 fn scale_and<T: std::fmt::Debug, S: Strategy<Value = T>>(
@@ -77,7 +83,12 @@ fn scale_and<T: std::fmt::Debug, S: Strategy<Value = T>>(
 }
 
 fn header(scale: Scale) -> Header {
-    Header { first_ppem: scale.first_ppem, last_ppem: scale.last_ppem, ..Header::default() }
+    Header {
+        first_ppem: scale.first_ppem,
+        last_ppem: scale.last_ppem,
+        skipped: (scale.step - 1) as u8,
+        ..Header::default()
+    }
 }
 
 proptest! {
@@ -125,9 +136,10 @@ proptest! {
         models.sort_by_key(|m| m.gid);
         models.dedup_by_key(|m| m.gid);
         let header = Header { target, outline_hash, seed, steps, knots, rank, cell, ..header(scale) };
-        let (bytes, lengths) = table::write(&header, &models, scale).unwrap();
+        let (bytes, lengths) = table::write(&header, &models, &[], scale).unwrap();
         let table = Table::parse(&bytes).unwrap();
         prop_assert_eq!(table.header(), &header);
+        prop_assert_eq!(table.header().scale(scale.units_per_em), scale);
         prop_assert_eq!(table.table_len(), bytes.len());
         prop_assert!(table.gids().eq(models.iter().map(|m| m.gid)));
         let mut decoder = ModelDecoder::new(&table).unwrap();
@@ -143,9 +155,84 @@ proptest! {
     }
 }
 
+/// Composed glyphs whose parts are among `models` glyphs, numbered from 0.
+fn composed(models: u16, sizes: usize) -> impl Strategy<Value = Vec<Composed>> {
+    // Few different places, so that some are shared.
+    let snaps = move || prop_oneof![Just(Vec::new()), (-2i8..=2).prop_map(move |place| vec![place; sizes])];
+    let part = (0..models, any::<[i16; 2]>(), [snaps(), snaps()]);
+    let part = part.prop_map(|(gid, offset, snaps)| Part { gid, offset, snaps });
+    vec(vec(part, 1..=MAX_PARTS), 0..6).prop_map(move |glyphs| {
+        let numbered = (models..).step_by(3).zip(glyphs);
+        numbered.map(|(gid, parts)| Composed { gid, parts }).collect()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+
+    #[test]
+    fn composed_glyphs_are_read_as_they_were_written(
+        (scale, composed) in scale_and(|sizes| composed(3, sizes)), outlines_dropped in any::<bool>(),
+    ) {
+        let header = Header { outlines_dropped, ..header(scale) };
+        let models: Vec<_> = (0..3).map(|gid| GlyphModel { gid, weights: Weights::default() }).collect();
+        let (bytes, _) = table::write(&header, &models, &composed, scale).unwrap();
+        let table = Table::parse(&bytes).unwrap();
+        prop_assert_eq!(table.header(), &header);
+        prop_assert_eq!(table.gids().len(), 3 + composed.len());
+        prop_assert!(table.gids().eq((0..3).chain(composed.iter().map(|glyph| glyph.gid))));
+        let mut decoder = ModelDecoder::new(&table).unwrap();
+        for glyph in &composed {
+            prop_assert!(table.contains(glyph.gid) && table.is_composed(glyph.gid));
+            prop_assert_eq!(&decoder.parts(&table, glyph.gid, scale).unwrap(), &glyph.parts);
+            prop_assert_eq!(table.model_len(glyph.gid), Ok(6 + 10 * glyph.parts.len()));
+            prop_assert_eq!(decoder.decode(&table, glyph.gid, scale), Err(Error::MissingGlyph(glyph.gid)));
+        }
+        prop_assert!(!table.is_composed(0) && !table.contains(4));
+        prop_assert_eq!(decoder.parts(&table, 0, scale), Err(Error::MissingGlyph(0)));
+    }
+}
+
+#[test]
+fn parts_that_readers_would_refuse_are_not_written() {
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10, step: 1 };
+    let models = [GlyphModel { gid: 1, weights: Weights::default() }];
+    let write = |part: Part, count: usize| {
+        table::write(&header(scale), &models, &[Composed { gid: 5, parts: vec![part; count] }], scale)
+    };
+    let part = Part { gid: 1, ..Part::default() };
+    assert!(write(part.clone(), MAX_PARTS).is_ok());
+    assert!(matches!(write(part.clone(), MAX_PARTS + 1), Err(Error::LimitExceeded(_))));
+    // A composed glyph is not a part, and so there are neither chains nor rings.
+    let refused = |part: Part| matches!(write(part, 1), Err(Error::InvalidParameter(_)));
+    assert!(refused(Part { gid: 5, ..part.clone() }));
+    assert!(refused(Part { snaps: [vec![], vec![0; 2]], ..part }));
+}
+
+#[test]
+fn a_part_without_a_model_or_places_is_malformed() {
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10, step: 1 };
+    let models = [GlyphModel { gid: 1, weights: Weights::default() }];
+    let part = Part { gid: 1, ..Part::default() };
+    let composed = [Composed { gid: 5, parts: vec![part] }];
+    let (bytes, _) = table::write(&header(scale), &models, &composed, scale).unwrap();
+    // The part's five numbers are the last bytes: the model, the offset, and twice that there are no places.
+    let part_at = bytes.len() - 10;
+    let parts = |at: usize, number: u16| {
+        let mut bytes = bytes.clone();
+        bytes[part_at + at..][..2].copy_from_slice(&number.to_be_bytes());
+        let table = Table::parse(&bytes).unwrap();
+        ModelDecoder::new(&table).unwrap().parts(&table, 5, scale)
+    };
+    assert_eq!(parts(0, 0).unwrap(), composed[0].parts);
+    for (at, number) in [(0, 1), (0, u16::MAX), (6, 0), (8, 0)] {
+        assert!(matches!(parts(at, number), Err(Error::Malformed(_))), "{number} at {at}");
+    }
+}
+
 #[test]
 fn a_model_that_readers_would_refuse_is_not_written() {
-    let scale = Scale { units_per_em: 1000, first_ppem: 1, last_ppem: MAX_TRAINED_PPEM };
+    let scale = Scale { units_per_em: 1000, first_ppem: 1, last_ppem: MAX_TRAINED_PPEM, step: 1 };
     let knots: Vec<i16> = (0..i16::from(MAX_KNOTS)).collect();
     let hinted = |value: i32| vec![value; knots.len() * scale.sizes()];
     let fits = Weights {
@@ -154,7 +241,8 @@ fn a_model_that_readers_would_refuse_is_not_written() {
         warp_y: AxisWarp { hinted: hinted(0), knots: knots.clone() },
         ..Weights::default()
     };
-    let write = |weights: Weights| table::write(&header(scale), &[GlyphModel { gid: 7, weights }], scale);
+    let write =
+        |weights: Weights| table::write(&header(scale), &[GlyphModel { gid: 7, weights }], &[], scale);
     assert!(write(fits.clone()).is_ok());
     let refused = |weights: Weights| matches!(write(weights), Err(Error::LimitExceeded(_)));
     // A quarter of a million bytes.
@@ -195,6 +283,10 @@ fn slim(data: &[u8]) -> Vec<u8> {
     builder.build()
 }
 
+/// A font that is mostly composed glyphs, with the tables that the renderer reads.
+static COMPOSED: LazyLock<Vec<u8>> =
+    LazyLock::new(|| slim(&converted(&font("LiberationSans-Regular"), "aeáàâéèê", 0).font));
+
 /// The `Nfrt` table's bytes.
 fn nfrt(font: &[u8]) -> &[u8] {
     FontRef::new(font).unwrap().table_data(TAG).unwrap().as_bytes()
@@ -220,7 +312,7 @@ fn use_font(data: &[u8]) -> Result<usize, Error> {
     let mut rasterizer = Rasterizer::new(&font)?;
     let mut drawn = 0;
     let mut pixels = vec![0; DRAWN_AREA];
-    for gid in font.modelled_glyphs().take(8) {
+    for gid in font.modelled_glyphs().take(12) {
         for ppem in [12.0, 33.5] {
             match rasterizer.placement(gid, ppem) {
                 Ok(placement) if placement.area() <= DRAWN_AREA => {
@@ -287,9 +379,20 @@ proptest! {
     }
 
     #[test]
+    fn damage_to_composed_glyphs_is_survived(damage in damage(), counts in any::<bool>()) {
+        const COUNTS: std::ops::Range<usize> = 44..56;
+        let (start, table) = (table_start(&COMPOSED), nfrt(&COMPOSED));
+        let payload = u32::from_be_bytes(table[32..36].try_into().unwrap()) as usize;
+        let models = usize::from(u16::from_be_bytes([table[10], table[11]]));
+        let at = 56 + 14 * models + dictionary_len(table) + payload;
+        let (from, to) = if counts { (COUNTS.start, COUNTS.end) } else { (at, table.len()) };
+        survives(&damaged(&COMPOSED, start + from, start + to, &damage))?;
+    }
+
+    #[test]
     fn damage_to_the_dictionary_is_survived(damage in damage()) {
         let (start, table) = (table_start(&WITH_DICTIONARY), nfrt(&WITH_DICTIONARY));
-        let at = start + 44 + 14 * Table::parse(table).unwrap().gids().len();
+        let at = start + 56 + 14 * Table::parse(table).unwrap().gids().len();
         survives(&damaged(&WITH_DICTIONARY, at, at + dictionary_len(table), &damage))?;
     }
 
@@ -309,5 +412,6 @@ proptest! {
 #[test]
 fn a_whole_font_is_drawn() {
     assert_eq!(use_font(&CONVERTED), Ok(8));
-    assert_eq!(use_font(&WITH_DICTIONARY), Ok(16));
+    assert_eq!(use_font(&WITH_DICTIONARY), Ok(24));
+    assert_eq!(use_font(&COMPOSED), Ok(22));
 }

@@ -36,7 +36,7 @@ impl Twin<'_> {
     /// What a quantity known for each trained size is at this one.
     fn between_sizes(&self, value: impl Fn(usize) -> f64) -> f64 {
         let (first, last) = (f64::from(self.scale.first_ppem), f64::from(self.scale.last_ppem));
-        let at = self.ppem.clamp(first, last) - first;
+        let at = (self.ppem.clamp(first, last) - first) / f64::from(self.scale.step);
         let (low, high) = (at.floor() as usize, at.ceil() as usize);
         let beyond =
             if self.ppem < first { (first - self.ppem) / first } else { (self.ppem - last).max(0.0) / last };
@@ -56,7 +56,7 @@ impl Twin<'_> {
             let plain = self.em(units);
             let moved = self.between_sizes(|size| {
                 let hinted = f64::from(warp.hinted[size * warp.knots.len() + k]) / f64::from(WARP_STEPS);
-                hinted - plain * (f64::from(self.scale.first_ppem) + size as f64)
+                hinted - plain * self.scale.ppem_of(size) as f64
             });
             let hinted = plain * self.ppem + moved;
             let least = knots.last().map_or(f64::NEG_INFINITY, |(_, below)| below + f64::from(MIN_KNOT_GAP));
@@ -234,7 +234,7 @@ fn compare(weights: &Weights, scale: Scale, ppem: f32, what: &str) {
 fn compare_font(name: &str, target: Target, sizes: &[f32]) {
     let data = font(name);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
-    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 40 };
+    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 40, step: 1 };
     let hinted: Vec<_> = (scale.first_ppem..=scale.last_ppem).map(|s| teacher.at(s).unwrap()).collect();
     for character in ascii().chars() {
         let lesson = lesson(&teacher, &hinted, gid(&data, character)).unwrap();

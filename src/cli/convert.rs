@@ -14,11 +14,12 @@ use super::progress::{Reporter, Verbosity};
 use crate::compare::fonts::FontPair;
 use crate::compare::report::{Report, glyphs};
 use crate::convert::open::{has_models, open};
+use crate::convert::partial::Partial;
 use crate::convert::ppem::PpemList;
 use crate::convert::select::{glyph_count, glyph_names};
 use crate::convert::teacher::Teacher;
 use crate::convert::train::Backend;
-use crate::convert::{Conversion, GlyphReport, Options, convert};
+use crate::convert::{Conversion, GlyphReport, Options, resume};
 use crate::model::Target;
 
 /// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
@@ -32,9 +33,15 @@ pub struct Args {
     output: PathBuf,
     #[command(flatten)]
     selection: SelectionArgs,
-    /// The sizes to learn, in pixels per em, without gaps
+    /// The sizes to learn, in pixels per em: a range, which may have a step, as in 8-64:2
+    ///
+    /// With --train-ppem, the sizes that the figures are about.
     #[arg(long, value_name = "SIZES", default_value = "8-64")]
     ppem: PpemList,
+    /// Learn these sizes instead of those of --ppem; sizes between them are drawn with what their neighbours
+    /// have learnt
+    #[arg(long, value_name = "SIZES")]
+    train_ppem: Option<PpemList>,
     /// What to hint for: smooth, mono or lcd
     #[arg(long, value_name = "TARGET", default_value_t)]
     target: Target,
@@ -50,6 +57,18 @@ pub struct Args {
     /// The font's index, if the input is a collection
     #[arg(long, value_name = "N", default_value_t = 0)]
     index: u32,
+    /// Leave out the outlines of the glyphs that get models, for programs that draw only with those
+    ///
+    /// Metrics, characters and layout stay. Everything else draws these glyphs as blanks.
+    #[arg(long)]
+    drop_outlines: bool,
+    /// Go on where an interrupted conversion to the same output stopped
+    ///
+    /// While it runs, a conversion keeps the glyphs that are ready in OUTPUT.partial. If it is interrupted, the
+    /// same command with --resume trains only the others, and the font comes out the same. The input, the options
+    /// and the version have to be the same, but --jobs may change. The file is deleted in the end.
+    #[arg(long)]
+    resume: bool,
     /// Write a report as JSON
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
@@ -72,6 +91,8 @@ struct Written<'r> {
     glyphs: Vec<WrittenGlyph>,
     table_bytes: usize,
     bytes_per_glyph: f64,
+    /// The hint programs that the table stands in place of.
+    hint_bytes: WrittenHints,
     input_bytes: usize,
     output_bytes: usize,
     mae: f64,
@@ -82,9 +103,19 @@ struct Written<'r> {
 }
 
 #[derive(Debug, Serialize)]
+struct WrittenHints {
+    glyph_programs: usize,
+    fpgm: usize,
+    prep: usize,
+    cvt: usize,
+    total: usize,
+}
+
+#[derive(Debug, Serialize)]
 struct WrittenGlyph {
     gid: u16,
     bytes: usize,
+    composed: bool,
     mae: f64,
     bad16: f64,
 }
@@ -107,13 +138,19 @@ fn backend(name: &str) -> Result<Backend, String> {
 /// Wrong usage, an input that cannot teach, an output that cannot be written. An existing output is then as
 /// it was.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let ppem = check_usage(args)?;
+    let sizes = check_usage(args)?;
     let input = read(&args.input)?;
-    let (options, reporter) = prepare(args, &input, ppem).map_err(|e| e.at(args.input.display()))?;
+    let (options, reporter) = prepare(args, &input, sizes).map_err(|e| e.at(args.input.display()))?;
     let output = Output::new(&args.output)?;
     let report = args.report.as_deref().map(Output::new).transpose()?;
 
-    let converted = convert(&input, &options, &reporter);
+    let partial = output.partial();
+    let partial = partial.map(|path| Partial::open(&path, &input, &options, args.resume)).transpose()?;
+    if let Some(found) = partial.as_ref().map(Partial::found).filter(|found| *found > 0) {
+        reporter.note(&format!("going on after {}", glyphs(found)));
+    }
+
+    let converted = resume(&input, &options, &reporter, partial.as_ref());
     let elapsed = reporter.elapsed();
     drop(reporter);
     let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
@@ -126,6 +163,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         args.jobs,
     )?;
     output.write(&conversion.font)?;
+    partial.map(Partial::remove).transpose()?;
 
     let written = summary(args, &input, &conversion, &comparison, elapsed.as_secs_f64());
     if let Some(file) = report {
@@ -135,7 +173,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.quiet { Ok(()) } else { print(&written) }
 }
 
-fn check_usage(args: &Args) -> Result<RangeInclusive<u16>, Failure> {
+/// The sizes to learn, and the step between them.
+fn check_usage(args: &Args) -> Result<(RangeInclusive<u16>, u16), Failure> {
     let clash = |a: &Path, b: &Path, what: &str| {
         if same_file(a, b) { Err(Failure::usage(format!("{what}; write to another file"))) } else { Ok(()) }
     };
@@ -144,14 +183,23 @@ fn check_usage(args: &Args) -> Result<RangeInclusive<u16>, Failure> {
         clash(&args.input, report, "the report is the input")?;
         clash(&args.output, report, "the report is the output")?;
     }
-    args.ppem.contiguous().ok_or_else(|| {
-        let list = &args.ppem;
-        Failure::usage(format!("--ppem {list} leaves sizes out; training takes one range, as in 8-64"))
+    let (option, list) = match &args.train_ppem {
+        Some(list) => ("--train-ppem", list),
+        None => ("--ppem", &args.ppem),
+    };
+    list.evenly_spaced().ok_or_else(|| {
+        Failure::usage(format!(
+            "{option} {list} is uneven; training takes one range with one step, as in 8-64 or 8-64:2"
+        ))
     })
 }
 
 /// Checks all that can be known before the training.
-fn prepare(args: &Args, input: &[u8], ppem: RangeInclusive<u16>) -> Result<(Options, Reporter), Failure> {
+fn prepare(
+    args: &Args,
+    input: &[u8],
+    (ppem, ppem_step): (RangeInclusive<u16>, u16),
+) -> Result<(Options, Reporter), Failure> {
     let font = open(input, args.index)?;
     if has_models(&font) {
         return Err(Failure::failed(
@@ -159,7 +207,7 @@ fn prepare(args: &Args, input: &[u8], ppem: RangeInclusive<u16>) -> Result<(Opti
         ));
     }
     let teacher = Teacher::new(&font, args.target)?;
-    for size in ppem.clone() {
+    for size in args.ppem.sizes().iter().copied().chain(ppem.clone().step_by(ppem_step.into())) {
         teacher.at(size)?;
     }
     let all = 0..=u16::try_from(glyph_count(&font)?.saturating_sub(1)).unwrap_or(u16::MAX);
@@ -174,10 +222,12 @@ fn prepare(args: &Args, input: &[u8], ppem: RangeInclusive<u16>) -> Result<(Opti
         index: args.index,
         gids,
         ppem,
+        ppem_step,
         target: args.target,
         seed: args.seed,
         jobs: args.jobs,
         backend: args.backend,
+        drop_outlines: args.drop_outlines,
         ..Options::default()
     };
     Ok((options, reporter))
@@ -190,8 +240,15 @@ fn summary<'r>(
     comparison: &'r Report,
     seconds: f64,
 ) -> Written<'r> {
-    let glyph = |g: &GlyphReport| WrittenGlyph { gid: g.gid, bytes: g.bytes, mae: g.mae, bad16: g.bad16 };
+    let glyph = |g: &GlyphReport| WrittenGlyph {
+        gid: g.gid,
+        bytes: g.bytes,
+        composed: g.composed,
+        mae: g.mae,
+        bad16: g.bad16,
+    };
     let figures = &comparison.totals.neural.figures;
+    let hints = &conversion.hint_bytes;
     Written {
         input: args.input.display().to_string(),
         output: args.output.display().to_string(),
@@ -201,6 +258,13 @@ fn summary<'r>(
         glyphs: conversion.glyphs.iter().map(glyph).collect(),
         table_bytes: conversion.table_bytes,
         bytes_per_glyph: comparison.subject.bytes_per_glyph,
+        hint_bytes: WrittenHints {
+            glyph_programs: hints.glyph_programs,
+            fpgm: hints.fpgm,
+            prep: hints.prep,
+            cvt: hints.cvt,
+            total: hints.total(),
+        },
         input_bytes: input.len(),
         output_bytes: conversion.font.len(),
         mae: figures.mae,
@@ -213,9 +277,25 @@ fn summary<'r>(
 fn print(written: &Written<'_>) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let unhinted = &written.comparison.totals.unhinted.figures;
-    writeln!(out, "{}: {} at {} ppem", written.output, glyphs(written.glyphs.len()), written.ppem)?;
+    let composed = match written.glyphs.iter().filter(|glyph| glyph.composed).count() {
+        0 => String::new(),
+        count => format!(", {count} of them put together from others"),
+    };
+    let count = glyphs(written.glyphs.len());
+    writeln!(out, "{}: {count} at {} ppem{composed}", written.output, written.ppem)?;
     writeln!(out, "table   {} bytes, {:.1} per glyph", written.table_bytes, written.bytes_per_glyph)?;
-    writeln!(out, "file    {} bytes, from {}", written.output_bytes, written.input_bytes)?;
+    let hints = &written.hint_bytes;
+    writeln!(
+        out,
+        "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
+        hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
+    )?;
+    let percent = 100.0 * written.output_bytes as f64 / written.input_bytes.max(1) as f64;
+    writeln!(
+        out,
+        "file    {} bytes, {percent:.1} % of the original's {}",
+        written.output_bytes, written.input_bytes
+    )?;
     writeln!(out, "mae     {:.5} (unhinted {:.5})", written.mae, unhinted.mae)?;
     writeln!(out, "bad16   {:.2} % (unhinted {:.2} %)", 100.0 * written.bad16, 100.0 * unhinted.bad16)?;
     writeln!(out, "time    {:.1} s", written.seconds)?;

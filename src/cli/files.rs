@@ -68,6 +68,13 @@ impl Output {
         Ok(output)
     }
 
+    /// The file beside this one that keeps unfinished work: its name and `.partial`. Pipes and devices have none.
+    pub(super) fn partial(&self) -> Option<PathBuf> {
+        let mut name = self.path.clone().into_os_string();
+        name.push(".partial");
+        (self.kind == Kind::Regular).then_some(name.into())
+    }
+
     /// Writes the file.
     pub(super) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         let result = match self.kind {

@@ -26,12 +26,14 @@ struct Info {
     target: &'static str,
     first_ppem: u16,
     last_ppem: u16,
+    ppem_step: u16,
     glyphs_with_models: usize,
     glyphs: u32,
     table_bytes: usize,
     bytes_per_glyph: f64,
     file_bytes: usize,
     outlines_match: bool,
+    outlines_dropped: bool,
 }
 
 /// Runs `nfr info`.
@@ -50,12 +52,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         target: font.target().name(),
         first_ppem,
         last_ppem,
+        ppem_step: font.ppem_step(),
         glyphs_with_models,
         glyphs: glyph_count(&file)?,
         table_bytes: font.table_len(),
         bytes_per_glyph: font.table_len() as f64 / glyphs_with_models.max(1) as f64,
         file_bytes: data.len(),
         outlines_match: font.outlines_match(),
+        outlines_dropped: font.outlines_dropped(),
     };
     let mut out = io::stdout().lock();
     if args.json {
@@ -65,14 +69,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     writeln!(out, "table version   {}", info.version)?;
     writeln!(out, "target          {}", info.target)?;
-    writeln!(out, "sizes           {first_ppem}-{last_ppem} ppem")?;
+    let step = if info.ppem_step == 1 { String::new() } else { format!(":{}", info.ppem_step) };
+    writeln!(out, "sizes           {first_ppem}-{last_ppem}{step} ppem")?;
     writeln!(out, "glyphs          {} of {} have models", info.glyphs_with_models, info.glyphs)?;
     writeln!(out, "table           {} bytes, {:.1} per glyph", info.table_bytes, info.bytes_per_glyph)?;
     writeln!(out, "file            {} bytes", info.file_bytes)?;
-    let outlines = if info.outlines_match {
-        "those that the models were trained from"
-    } else {
-        "changed after training; convert the font again"
+    let outlines = match (info.outlines_dropped, info.outlines_match) {
+        (true, _) => "dropped for the glyphs that have models",
+        (false, true) => "those that the models were trained from",
+        (false, false) => "changed after training; convert the font again",
     };
     writeln!(out, "outlines        {outlines}")?;
     Ok(())

@@ -76,6 +76,13 @@ impl Reporter {
         lock(&self.state).start.elapsed()
     }
 
+    /// Says something, unless nothing is to be said.
+    pub(super) fn note(&self, text: &str) {
+        if self.verbosity != Verbosity::Quiet {
+            self.line(text);
+        }
+    }
+
     fn line(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.println(text),
@@ -93,6 +100,13 @@ impl Drop for Reporter {
 }
 
 impl Progress for Reporter {
+    fn planned(&self, glyphs: usize) {
+        lock(&self.state).total = glyphs;
+        if let Some(bar) = &self.bar {
+            bar.set_length(glyphs as u64);
+        }
+    }
+
     fn glyph_done(&self, gid: u16, mae: f64) {
         let state = {
             let mut state = lock(&self.state);
@@ -111,9 +125,7 @@ impl Progress for Reporter {
     }
 
     fn warn(&self, message: &str) {
-        if self.verbosity != Verbosity::Quiet {
-            self.line(&format!("warning: {message}"));
-        }
+        self.note(&format!("warning: {message}"));
     }
 }
 

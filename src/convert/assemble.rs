@@ -1,5 +1,8 @@
 //! The output font: the input font without its hint programs, and with the models in a table of their own.
 
+use std::collections::BTreeSet;
+
+use read_fonts::tables::glyf::Glyph;
 use read_fonts::tables::head::Flags;
 use read_fonts::types::Tag;
 use read_fonts::{FontRef, TableProvider};
@@ -80,7 +83,7 @@ pub fn hint_bytes(font: &FontRef) -> Result<HintBytes, Error> {
     })
 }
 
-/// The hash that ties models to the outlines of the font that [`assemble`] writes.
+/// The hash that ties models to the outlines of the font that [`assemble`] writes, all of them.
 ///
 /// # Errors
 ///
@@ -96,14 +99,20 @@ pub fn outline_hash(font: &FontRef) -> Result<u64, Error> {
 /// Changed are `glyf` and `loca` (see [`strip`]), the fields of `maxp` and `head` that speak of programs, and
 /// `gasp`, which asks for smooth and unhinted rendering at all sizes. The tables `fpgm`, `prep`, `cvt `,
 /// `cvar`, `hdmx`, `VDMX`, `LTSH` and `DSIG` are left out. All others are copied byte by byte. A font out of
-/// a collection becomes a font file of its own.
+/// a collection becomes a font file of its own. The glyphs in `dropped` are left without outlines, unless glyphs
+/// that keep theirs are made of them.
 ///
 /// # Errors
 ///
 /// `Malformed` if a table or glyph that has to change cannot be read, or if a table lies outside the file;
 /// `Unsupported` without TrueType outlines; `LimitExceeded` for a result beyond 1 GiB.
-pub fn assemble(font: &FontRef, nfrt: &[u8]) -> Result<Vec<u8>, Error> {
-    let stripped = strip_font(font)?;
+pub fn assemble(font: &FontRef, nfrt: &[u8], dropped: &BTreeSet<u16>) -> Result<Vec<u8>, Error> {
+    let mut stripped = strip_font(font)?;
+    if !dropped.is_empty() {
+        let num_glyphs = font.maxp().map_err(|e| unreadable(MAXP, e))?.num_glyphs();
+        let kept = components(font, (0..num_glyphs).filter(|gid| !dropped.contains(gid)))?;
+        stripped = stripped.without(&(dropped - &kept), num_glyphs)?;
+    }
     let mut builder = FontBuilder::new();
     let mut size = nfrt.len();
     for record in font.table_directory().table_records() {
@@ -126,6 +135,22 @@ pub fn assemble(font: &FontRef, nfrt: &[u8]) -> Result<Vec<u8>, Error> {
     builder.add_raw(GLYF, stripped.glyf);
     builder.add_raw(table::TAG, nfrt);
     Ok(builder.build())
+}
+
+/// The glyphs that some glyphs are made of, and those that these are made of.
+fn components(font: &FontRef, gids: impl Iterator<Item = u16>) -> Result<BTreeSet<u16>, Error> {
+    let loca = font.loca(None).map_err(|e| unreadable(LOCA, e))?;
+    let glyf = font.glyf().map_err(|e| unreadable(GLYF, e))?;
+    let mut found = BTreeSet::new();
+    let mut left: Vec<u16> = gids.collect();
+    while let Some(gid) = left.pop() {
+        // What cannot be read has no components either.
+        if let Ok(Some(Glyph::Composite(glyph))) = loca.get_glyf(gid.into(), &glyf) {
+            let parts = glyph.components().filter_map(|part| u16::try_from(part.glyph.to_u32()).ok());
+            left.extend(parts.filter(|part| found.insert(*part)));
+        }
+    }
+    Ok(found)
 }
 
 fn table_bytes<'a>(font: &FontRef<'a>, tag: Tag) -> Result<&'a [u8], Error> {

@@ -2,9 +2,12 @@
 //! stage's output is a plain type that the next one takes.
 
 pub mod assemble;
+mod compose;
+mod course;
 mod deform;
 mod distance;
 pub mod open;
+pub mod partial;
 pub mod pipeline;
 pub mod ppem;
 #[cfg(test)]
@@ -18,4 +21,4 @@ pub mod teacher;
 pub mod train;
 mod warp;
 
-pub use pipeline::{Conversion, GlyphReport, Options, Progress, convert};
+pub use pipeline::{Conversion, GlyphReport, Options, Progress, convert, resume};

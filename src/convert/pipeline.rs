@@ -1,25 +1,21 @@
 //! The whole conversion.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use read_fonts::FontRef;
 
-use super::assemble::{assemble, outline_hash};
-use super::start::{Capacity, Draft};
-use super::teach::{Lesson, lesson};
-use super::teacher::{Teacher, TeacherAt};
-use super::train::{Backend, Schedule, train};
+use super::assemble::{HintBytes, assemble, hint_bytes, outline_hash};
+use super::compose::Plan;
+use super::course::Course;
+use super::partial::Partial;
+use super::start::Capacity;
+use super::teacher::Teacher;
+use super::train::{Backend, Schedule};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
 use crate::model::Target;
-use crate::model::gridfit::{GridFit, Scale, Scratch, Weights};
-use crate::render::Bitmap;
-use crate::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM};
-
-/// Glyphs that are trained together. The result depends on it in the last digits, so that it is fixed.
-const CHUNK: usize = 2;
+use crate::table::{self, GlyphModel, Header, MAX_PPEM_STEP, MAX_TRAINED_PPEM, Table};
 
 /// What a conversion is asked to do.
 #[derive(Debug, Clone)]
@@ -30,6 +26,8 @@ pub struct Options {
     pub gids: Vec<u16>,
     /// The sizes to train on, in pixels per em.
     pub ppem: RangeInclusive<u16>,
+    /// From one of them to the next. Sizes between are drawn with what their neighbours have learnt.
+    pub ppem_step: u16,
     /// What the teacher hints for.
     pub target: Target,
     /// Seeds whatever the training draws at random.
@@ -42,6 +40,10 @@ pub struct Options {
     pub capacity: Capacity,
     /// How long and how fast to train.
     pub schedule: Schedule,
+    /// Whether glyphs are put together from others' models where their hints do the same.
+    pub compose: bool,
+    /// Whether the outlines of the glyphs that have models are left out of the font.
+    pub drop_outlines: bool,
 }
 
 impl Default for Options {
@@ -51,18 +53,26 @@ impl Default for Options {
             index: 0,
             gids: Vec::new(),
             ppem: 8..=64,
+            ppem_step: 1,
             target: Target::default(),
             seed: 1,
             jobs: 1,
             backend: Backend::default(),
             capacity: Capacity::default(),
             schedule: Schedule::default(),
+            compose: true,
+            drop_outlines: false,
         }
     }
 }
 
 /// What a conversion tells while it runs; called from several threads.
 pub trait Progress: Sync {
+    /// So many glyphs will be ready in the end: those selected, and parts of them that need models too.
+    fn planned(&self, glyphs: usize) {
+        let _ = glyphs;
+    }
+
     /// One glyph is ready: its error over all sizes (mae, 0..1).
     fn glyph_done(&self, gid: u16, mae: f64);
 
@@ -77,8 +87,10 @@ pub trait Progress: Sync {
 pub struct GlyphReport {
     /// The glyph.
     pub gid: u16,
-    /// Bytes of its model in the table.
+    /// Bytes of its model in the table, or of the list of its parts.
     pub bytes: usize,
+    /// Whether it is put together from others' models.
+    pub composed: bool,
     /// Mean absolute error against the teacher over all sizes, 0..1.
     pub mae: f64,
     /// Share of pixels off by more than 16/255.
@@ -90,22 +102,14 @@ pub struct GlyphReport {
 pub struct Conversion {
     /// The new font file.
     pub font: Vec<u8>,
-    /// A line for each glyph, in order.
+    /// A line for each glyph of the table, in order: those selected, and parts of them.
     pub glyphs: Vec<GlyphReport>,
-    /// The sums over all glyphs and sizes.
+    /// The sums over all selected glyphs and sizes.
     pub sums: Sums,
     /// The length of the `Nfrt` table.
     pub table_bytes: usize,
-}
-
-/// Where a thread leaves a chunk's result.
-type Slot = Mutex<Option<Result<Vec<Trained>, Error>>>;
-
-/// A trained glyph with what it differs from its teacher by.
-struct Trained {
-    gid: u16,
-    weights: Weights,
-    sums: Sums,
+    /// The hint programs of the original, which the font does without.
+    pub hint_bytes: HintBytes,
 }
 
 /// Converts a font: trains a model for each glyph and writes a font that carries them instead of hints.
@@ -115,6 +119,21 @@ struct Trained {
 /// `Malformed` or `Unsupported` for a font that cannot teach, `MissingGlyph` for a glyph that it does not
 /// have, `InvalidParameter` for options that make no sense.
 pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Result<Conversion, Error> {
+    resume(input, options, progress, None)
+}
+
+/// Converts a font as [`convert`] does. Glyphs that are ready are kept in `partial`, and those that it holds
+/// already are not trained again.
+///
+/// # Errors
+///
+/// As [`convert`], and `Io` if the work file cannot be written.
+pub fn resume(
+    input: &[u8],
+    options: &Options,
+    progress: &dyn Progress,
+    partial: Option<&Partial>,
+) -> Result<Conversion, Error> {
     check(options)?;
     let font = crate::render::open(input, options.index)?;
     if font.table_data(table::TAG).is_some() {
@@ -124,31 +143,43 @@ pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Resu
         ));
     }
     let teacher = Teacher::new(&font, options.target)?;
-    let sizes = options.ppem.clone().map(|s| teacher.at(s)).collect::<Result<Vec<_>, _>>()?;
-    let scale = Scale {
-        units_per_em: teacher.units_per_em(),
-        first_ppem: *options.ppem.start(),
-        last_ppem: *options.ppem.end(),
+    let header = header(&font, options)?;
+    let scale = header.scale(teacher.units_per_em());
+    let sizes = (0..scale.sizes())
+        .map(|size| teacher.at(scale.ppem_of(size) as u16))
+        .collect::<Result<Vec<_>, _>>()?;
+    let plan = if options.compose {
+        Plan::find(&font, &teacher, &sizes, scale, &options.gids)?
+    } else {
+        Plan::of_models(&options.gids)
     };
-    let trained = train_all(&teacher, &sizes, scale, options, progress)?;
-    let mut sums = Sums::default();
-    trained.iter().for_each(|t| sums.merge(&t.sums));
-    let figures: Vec<_> = trained.iter().map(|t| t.sums.figures()).collect();
+    progress.planned(plan.models.len() + plan.composed.len());
+    let course = Course { teacher: &teacher, sizes: &sizes, scale, options, progress, partial };
+    let trained = course.train_all(&plan.models)?;
+    let mut judged: BTreeMap<u16, Sums> = trained.iter().map(|t| (t.gid, t.sums)).collect();
     let models: Vec<GlyphModel> =
         trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
-    let (table, lengths) = table::write(&header(&font, options)?, &models, scale)?;
-    let glyphs = models.iter().zip(lengths).zip(figures).map(|((model, bytes), figures)| GlyphReport {
-        gid: model.gid,
-        bytes,
-        mae: figures.mae,
-        bad16: figures.bad16,
-    });
+    judged.extend(course.judge_composed(&models, &plan.composed)?);
+    let (table, _) = table::write(&header, &models, &plan.composed, scale)?;
+    let mut sums = Sums::default();
+    options.gids.iter().filter_map(|gid| judged.get(gid)).for_each(|s| sums.merge(s));
+    let dropped = if options.drop_outlines { judged.keys().copied().collect() } else { BTreeSet::new() };
     Ok(Conversion {
-        font: assemble(&font, &table)?,
-        glyphs: glyphs.collect(),
+        font: assemble(&font, &table, &dropped)?,
+        hint_bytes: hint_bytes(&font)?,
+        glyphs: reports(&Table::parse(&table)?, &judged)?,
         sums,
         table_bytes: table.len(),
     })
+}
+
+fn reports(table: &Table<'_>, judged: &BTreeMap<u16, Sums>) -> Result<Vec<GlyphReport>, Error> {
+    let report = |(&gid, sums): (&u16, &Sums)| {
+        let (figures, composed) = (sums.figures(), table.is_composed(gid));
+        let bytes = table.model_len(gid)?;
+        Ok(GlyphReport { gid, bytes, composed, mae: figures.mae, bad16: figures.bad16 })
+    };
+    judged.iter().map(report).collect()
 }
 
 fn check(options: &Options) -> Result<(), Error> {
@@ -163,6 +194,9 @@ fn check(options: &Options) -> Result<(), Error> {
     if first == 0 || first > last || last > MAX_TRAINED_PPEM {
         return wrong(format!("sizes {first}–{last} ppem; use a range within 1–{MAX_TRAINED_PPEM}"));
     }
+    if !(1..=MAX_PPEM_STEP).contains(&options.ppem_step) {
+        return wrong(format!("{} ppem from size to size; use 1–{MAX_PPEM_STEP}", options.ppem_step));
+    }
     Ok(())
 }
 
@@ -170,99 +204,14 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
     Ok(Header {
         target: options.target,
         first_ppem: *options.ppem.start(),
-        last_ppem: *options.ppem.end(),
+        last_ppem: options.ppem.clone().step_by(options.ppem_step.into()).last().unwrap_or(0),
+        skipped: (options.ppem_step - 1) as u8,
         outline_hash: outline_hash(font)?,
+        outlines_dropped: options.drop_outlines,
         seed: options.seed,
         steps: options.schedule.steps as u16,
         knots: options.capacity.knots as u8,
         rank: options.capacity.rank as u8,
         cell: (options.capacity.cell * 10_000.0).round() as u16,
     })
-}
-
-/// Trains chunk after chunk, on `options.jobs` threads. The first failure stops them all.
-fn train_all(
-    teacher: &Teacher<'_>,
-    sizes: &[TeacherAt<'_, '_>],
-    scale: Scale,
-    options: &Options,
-    progress: &dyn Progress,
-) -> Result<Vec<Trained>, Error> {
-    let chunks: Vec<&[u16]> = options.gids.chunks(CHUNK).collect();
-    let done: Vec<Slot> = chunks.iter().map(|_| Mutex::default()).collect();
-    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-    std::thread::scope(|scope| {
-        for _ in 0..options.jobs.clamp(1, chunks.len()) {
-            scope.spawn(|| {
-                while !failed.load(Ordering::Relaxed) {
-                    let k = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(gids) = chunks.get(k) else { break };
-                    let result = train_chunk(teacher, sizes, scale, options, gids, progress);
-                    failed.fetch_or(result.is_err(), Ordering::Relaxed);
-                    if let Ok(mut slot) = done[k].lock() {
-                        *slot = Some(result);
-                    }
-                }
-            });
-        }
-    });
-    let mut trained = Vec::with_capacity(options.gids.len());
-    let mut results: Vec<_> = done.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect();
-    // Of several failures the first glyph's is told, whichever thread met it.
-    if let Some(k) = results.iter().position(Result::is_err) {
-        results.swap(0, k);
-    }
-    for result in results {
-        trained.extend(result?);
-    }
-    Ok(trained)
-}
-
-fn train_chunk(
-    teacher: &Teacher<'_>,
-    sizes: &[TeacherAt<'_, '_>],
-    scale: Scale,
-    options: &Options,
-    gids: &[u16],
-    progress: &dyn Progress,
-) -> Result<Vec<Trained>, Error> {
-    let lessons = gids.iter().map(|gid| lesson(teacher, sizes, *gid)).collect::<Result<Vec<_>, _>>()?;
-    for complaint in lessons.iter().filter_map(|l| l.complaint.as_deref()) {
-        progress.warn(complaint);
-    }
-    let (inked, mut drafts): (Vec<&Lesson>, Vec<Draft>) = lessons
-        .iter()
-        .filter(|lesson| !lesson.outline.points.is_empty())
-        .map(|lesson| {
-            (lesson, Draft::from_lesson(lesson, scale, options.target, options.capacity, options.seed))
-        })
-        .unzip();
-    if !inked.is_empty() {
-        train(&inked, &mut drafts, scale, options.schedule, options.backend)?;
-    }
-    let mut drafts = drafts.into_iter();
-    lessons
-        .iter()
-        .map(|lesson| {
-            let blank = lesson.outline.points.is_empty();
-            let weights = if blank { None } else { drafts.next() }.unwrap_or_default().quantise();
-            let sums = judge(lesson, &weights, scale)?;
-            progress.glyph_done(lesson.gid, sums.figures().mae);
-            Ok(Trained { gid: lesson.gid, weights, sums })
-        })
-        .collect()
-}
-
-/// Draws what will be stored and compares it with the lesson.
-fn judge(lesson: &Lesson, weights: &Weights, scale: Scale) -> Result<Sums, Error> {
-    let model = GridFit::new(weights, scale)?;
-    let (mut sums, mut scratch) = (Sums::default(), Scratch::default());
-    for hinted in &lesson.sizes {
-        let ppem = f32::from(hinted.ppem);
-        let placement = model.placement(ppem)?;
-        let mut pixels = vec![0; placement.area()];
-        model.draw(ppem, placement, &mut scratch, &mut pixels);
-        sums.add(&hinted.bitmap, &Bitmap { placement, pixels });
-    }
-    Ok(sums)
 }

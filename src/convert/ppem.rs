@@ -16,10 +16,11 @@ impl PpemList {
         &self.0
     }
 
-    /// The list as one range, if no size between its ends is left out.
-    pub fn contiguous(&self) -> Option<RangeInclusive<u16>> {
+    /// The list's ends and the step between its sizes, if that is the same throughout. It is 1 for one size.
+    pub fn evenly_spaced(&self) -> Option<(RangeInclusive<u16>, u16)> {
         let (first, last) = (*self.0.first()?, *self.0.last()?);
-        (usize::from(last - first) + 1 == self.0.len()).then_some(first..=last)
+        let step = self.0.get(1).map_or(1, |second| second - first);
+        self.0.windows(2).all(|pair| pair[1] - pair[0] == step).then_some((first..=last, step))
     }
 }
 
@@ -113,10 +114,13 @@ mod tests {
     }
 
     #[test]
-    fn a_list_with_a_gap_is_not_contiguous() {
-        assert_eq!("8-12".parse::<PpemList>().unwrap().contiguous(), Some(8..=12));
-        assert_eq!("8,9,10".parse::<PpemList>().unwrap().contiguous(), Some(8..=10));
-        assert_eq!("8,10".parse::<PpemList>().unwrap().contiguous(), None);
+    fn a_list_is_evenly_spaced_if_it_has_one_step() {
+        let spaced = |text: &str| text.parse::<PpemList>().unwrap().evenly_spaced();
+        assert_eq!(spaced("8-12"), Some((8..=12, 1)));
+        assert_eq!(spaced("8,9,10"), Some((8..=10, 1)));
+        assert_eq!(spaced("8-13:2"), Some((8..=12, 2)));
+        assert_eq!(spaced("12"), Some((12..=12, 1)));
+        assert_eq!(spaced("8,9,11"), None);
     }
 
     #[test]

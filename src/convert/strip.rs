@@ -4,6 +4,7 @@
 //! The glyphs are copied as bytes, never decoded and written anew: what an outline is made of stays
 //! byte-identical. Their layout is followed only to find where the program and the data end.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use read_fonts::FontData;
@@ -33,6 +34,34 @@ pub struct Stripped {
     pub long_offsets: bool,
     /// Bytes of the programs that were removed, without the fields that said how long they were.
     pub program_bytes: usize,
+}
+
+impl Stripped {
+    /// The outlines with some glyphs left empty. Only `glyf`, `loca` and its format change.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if `loca` does not go with `glyf` and so many glyphs.
+    pub fn without(&self, dropped: &BTreeSet<u16>, num_glyphs: u16) -> Result<Self, Error> {
+        let mut outlines = Vec::with_capacity(self.glyf.len());
+        let mut ends = Vec::with_capacity(usize::from(num_glyphs));
+        let ranges = glyph_ranges(&self.loca, self.long_offsets, num_glyphs)?;
+        for (gid, range) in (0..num_glyphs).zip(ranges) {
+            if !dropped.contains(&gid) {
+                let outline = self.glyf.get(range);
+                outlines.extend_from_slice(outline.ok_or_else(|| {
+                    Error::Malformed(format!("'loca' puts glyph {gid} outside 'glyf'; repair the font"))
+                })?);
+            }
+            ends.push(outlines.len());
+        }
+        let (mut glyf, loca, long_offsets) = pack(&outlines, &ends);
+        // Some programs take a table without bytes for a missing one.
+        if glyf.is_empty() {
+            glyf.push(0);
+        }
+        Ok(Self { glyf, loca, long_offsets, program_bytes: self.program_bytes })
+    }
 }
 
 /// Removes the programs of all glyphs. `long_offsets` is the format of the `loca` passed in; that of the

@@ -34,7 +34,7 @@ pub const BOX_SLACK: f32 = 1.0 / 64.0;
 /// The largest size that is drawn, in pixels per em.
 pub const MAX_PPEM: f32 = 2048.0;
 /// The longest side of a bitmap in pixels.
-const MAX_SIDE: u32 = 8192;
+pub(crate) const MAX_SIDE: u32 = 8192;
 /// Displacements fade to nothing over this share of the size beyond the trained ones.
 pub const FADE_SPAN: f32 = 0.125;
 
@@ -77,12 +77,30 @@ pub struct Scale {
     pub first_ppem: u16,
     /// The largest trained size.
     pub last_ppem: u16,
+    /// From one trained size to the next; at least 1, and a divisor of what lies between the ends.
+    pub step: u16,
 }
 
 impl Scale {
     /// The number of trained sizes.
     pub fn sizes(&self) -> usize {
-        usize::from(self.last_ppem - self.first_ppem) + 1
+        usize::from((self.last_ppem - self.first_ppem) / self.step) + 1
+    }
+
+    /// A trained size in pixels per em, by its index.
+    pub fn ppem_of(&self, size: usize) -> usize {
+        usize::from(self.first_ppem) + size * usize::from(self.step)
+    }
+
+    /// Weights `(size index, next, share of next, strength)` that stand for a size: between two trained sizes
+    /// their displacements are mixed, beyond the trained ones they fade.
+    pub(crate) fn mix(&self, ppem: f32) -> (usize, usize, f32, f32) {
+        let (first, last) = (f32::from(self.first_ppem), f32::from(self.last_ppem));
+        let at = (ppem - first).clamp(0.0, last - first) / f32::from(self.step);
+        let size = at as usize;
+        let beyond =
+            (first - ppem).max(0.0) / (first * FADE_SPAN) + (ppem - last).max(0.0) / (last * FADE_SPAN);
+        (size, (size + 1).min(self.sizes() - 1), at - size as f32, (1.0 - beyond).max(0.0))
     }
 }
 
@@ -186,6 +204,8 @@ pub struct Scratch {
     rows: Vec<[f32; 2]>,
     column: Vec<[f32; 2]>,
     sums: Vec<f32>,
+    /// One part of a composed glyph.
+    pub(crate) layer: Vec<u8>,
 }
 
 impl GridFit {
@@ -222,9 +242,7 @@ impl GridFit {
         let em = |v: i16| f32::from(v) / f32::from(scale.units_per_em);
         let bounds = weights.bounds.map(em);
         let moves = |warp: &AxisWarp| {
-            let plain = |size: usize, knot: usize| {
-                em(warp.knots[knot]) * (usize::from(scale.first_ppem) + size) as f32
-            };
+            let plain = |size: usize, knot: usize| em(warp.knots[knot]) * scale.ppem_of(size) as f32;
             let knots = warp.knots.len().max(1);
             let moved = |(at, h): (usize, &i32)| *h as f32 / WARP_STEPS - plain(at / knots, at % knots);
             warp.hinted.iter().enumerate().map(moved).collect::<Vec<f32>>()
@@ -251,20 +269,9 @@ impl GridFit {
         size_of::<Self>() + floats * size_of::<f32>()
     }
 
-    /// Weights `(size index, next, share of next, strength)` that stand for a size: between two trained sizes
-    /// their displacements are mixed, beyond the trained ones they fade.
-    fn mix(&self, ppem: f32) -> (usize, usize, f32, f32) {
-        let (first, last) = (f32::from(self.scale.first_ppem), f32::from(self.scale.last_ppem));
-        let at = (ppem - first).clamp(0.0, last - first);
-        let size = at as usize;
-        let beyond =
-            (first - ppem).max(0.0) / (first * FADE_SPAN) + (ppem - last).max(0.0) / (last * FADE_SPAN);
-        (size, (size + 1).min(self.scale.sizes() - 1), at - size as f32, (1.0 - beyond).max(0.0))
-    }
-
     /// Hinted positions in pixels of an axis's knots, ascending.
     fn hinted_knots(&self, axis: usize, ppem: f32) -> impl Iterator<Item = f32> + '_ {
-        let (size, next, share, strength) = self.mix(ppem);
+        let (size, next, share, strength) = self.scale.mix(ppem);
         let (knots, moves) = (&self.knots[axis], &self.moves[axis]);
         let mut floor = f32::NEG_INFINITY;
         knots.iter().enumerate().map(move |(k, knot)| {
@@ -282,6 +289,15 @@ impl GridFit {
     /// `InvalidParameter` for a size that is not in `0..=MAX_PPEM`, `LimitExceeded` for a bitmap that is larger
     /// than `MAX_SIDE` on a side.
     pub fn placement(&self, ppem: f32) -> Result<Placement, Error> {
+        self.placement_at(ppem, [0.0; 2])
+    }
+
+    /// Where the bitmap lies at a size if the glyph stands at `origin` (pixels).
+    ///
+    /// # Errors
+    ///
+    /// As `placement`.
+    pub fn placement_at(&self, ppem: f32, origin: [f32; 2]) -> Result<Placement, Error> {
         if !(ppem > 0.0 && ppem <= MAX_PPEM) {
             return Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_PPEM}")));
         }
@@ -292,8 +308,8 @@ impl GridFit {
             let mut hinted = self.hinted_knots(axis, ppem);
             let low = hinted.next().unwrap_or(self.bounds[axis] * ppem);
             let high = hinted.last().unwrap_or(self.bounds[axis + 2] * ppem);
-            let first = (low + BOX_SLACK).floor() as i32;
-            (first, ((high - BOX_SLACK).ceil() as i32).max(first.saturating_add(1)))
+            let first = (low + origin[axis] + BOX_SLACK).floor() as i32;
+            (first, ((high + origin[axis] - BOX_SLACK).ceil() as i32).max(first.saturating_add(1)))
         };
         let [(left, right), (bottom, top)] = [range(0), range(1)];
         let place = Placement { left, top, width: right.abs_diff(left), height: top.abs_diff(bottom) };
@@ -308,6 +324,18 @@ impl GridFit {
 
     /// Draws the pixels of `placement` at a size. `pixels` has `placement.area()` bytes, top row first.
     pub fn draw(&self, ppem: f32, placement: Placement, scratch: &mut Scratch, pixels: &mut [u8]) {
+        self.draw_at(ppem, [0.0; 2], placement, scratch, pixels);
+    }
+
+    /// Draws as `draw` does, with the glyph at `origin` (pixels).
+    pub fn draw_at(
+        &self,
+        ppem: f32,
+        origin: [f32; 2],
+        placement: Placement,
+        scratch: &mut Scratch,
+        pixels: &mut [u8],
+    ) {
         if self.field.is_empty() || placement.area() == 0 {
             return;
         }
@@ -322,13 +350,13 @@ impl GridFit {
         let mut rows = std::mem::take(&mut scratch.rows);
         rows.clear();
         rows.extend((0..height * n).map(|j| {
-            let sample = placement.top as f32 - (j as f32 + 0.5) / n as f32;
+            let sample = placement.top as f32 - (j as f32 + 0.5) / n as f32 - origin[1];
             self.unwarp(1, &scratch.hinted[1], ppem, n, sample)
         }));
         scratch.sums.clear();
         scratch.sums.resize(width * height, 0.0);
         for i in 0..width * n {
-            let sample = placement.left as f32 + (i as f32 + 0.5) / n as f32;
+            let sample = placement.left as f32 + (i as f32 + 0.5) / n as f32 - origin[0];
             let [x, slope_x] = self.unwarp(0, &scratch.hinted[0], ppem, n, sample);
             let node_column = self.contract(x, slope_x, &scratch.deform, &mut scratch.column);
             for (j, &[y, slope_y]) in rows.iter().enumerate() {
@@ -355,7 +383,7 @@ impl GridFit {
 
     /// The deformation grid (em) at a size.
     fn mix_patterns(&self, ppem: f32, out: &mut Vec<f32>) {
-        let (size, next, share, strength) = self.mix(ppem);
+        let (size, next, share, strength) = self.scale.mix(ppem);
         let nodes = DEFORM_NODES * DEFORM_NODES;
         out.clear();
         out.resize(nodes, 0.0);

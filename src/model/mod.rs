@@ -1,5 +1,6 @@
 //! The models as integers: what each stores, and how it evaluates.
 
+pub mod compose;
 pub mod gridfit;
 
 use std::fmt;

@@ -1,13 +1,16 @@
 //! A font that carries models: looking glyphs up and decoding their models.
 
+use std::sync::Arc;
+
 use read_fonts::tables::{cmap::Cmap, hmtx::Hmtx};
 use read_fonts::types::Tag;
 use read_fonts::{FontRef, TableProvider};
 
-use super::{Bitmap, Placement};
+use super::Glyph;
 use crate::error::Error;
 use crate::model::Target;
-use crate::model::gridfit::{GridFit, Scale, Scratch};
+use crate::model::compose::Origin;
+use crate::model::gridfit::{GridFit, Scale};
 use crate::table::{self, Header, ModelDecoder, Table};
 
 /// A font with an `Nfrt` table, borrowed from the file's bytes. Opening it reads headers only.
@@ -49,9 +52,7 @@ impl<'a> Font<'a> {
             Error::Unsupported("the font has no 'Nfrt' table; make one with nfr-convert".into())
         })?;
         let table = Table::parse(bytes.as_bytes())?;
-        let units_per_em = head_units(&font)?;
-        let header = table.header();
-        let scale = Scale { units_per_em, first_ppem: header.first_ppem, last_ppem: header.last_ppem };
+        let scale = table.header().scale(head_units(&font)?);
         let glyph_count = font
             .maxp()
             .map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e})")))?
@@ -74,6 +75,11 @@ impl<'a> Font<'a> {
         (self.scale.first_ppem, self.scale.last_ppem)
     }
 
+    /// From one trained size to the next: 1 if none between the ends is left out.
+    pub fn ppem_step(&self) -> u16 {
+        self.scale.step
+    }
+
     /// The length of the `Nfrt` table in bytes.
     pub fn table_len(&self) -> usize {
         self.table.table_len()
@@ -94,7 +100,7 @@ impl<'a> Font<'a> {
     }
 
     /// The glyphs that have a model, ascending.
-    pub fn modelled_glyphs(&self) -> impl ExactSizeIterator<Item = u16> + 'a {
+    pub fn modelled_glyphs(&self) -> impl ExactSizeIterator<Item = u16> + use<'a> {
         self.table.gids()
     }
 
@@ -117,8 +123,17 @@ impl<'a> Font<'a> {
         f32::from(units) * ppem / f32::from(self.scale.units_per_em)
     }
 
+    /// Whether the glyphs that have models have no outlines in this font.
+    pub fn outlines_dropped(&self) -> bool {
+        self.header().outlines_dropped
+    }
+
     /// Whether the outlines in this font are the ones that the models were trained from. Reads all of them.
+    /// Where they were dropped, there is nothing that could differ.
     pub fn outlines_match(&self) -> bool {
+        if self.outlines_dropped() {
+            return true;
+        }
         let glyf = self.font.table_data(Tag::new(b"glyf"));
         glyf.is_some_and(|glyf| {
             table::outline_hash(self.scale.units_per_em, glyf.as_bytes()) == self.header().outline_hash
@@ -132,16 +147,33 @@ impl<'a> Font<'a> {
     ///
     /// `MissingGlyph` if it has none, `Malformed` or `LimitExceeded` if its bytes are damaged.
     pub fn glyph(&self, gid: u16) -> Result<Glyph, Error> {
-        self.glyph_with(&mut ModelDecoder::new(&self.table)?, gid)
+        self.glyph_with(&mut ModelDecoder::new(&self.table)?, gid, |_| None)
     }
 
     pub(super) fn decoder(&self) -> Result<ModelDecoder, Error> {
         ModelDecoder::new(&self.table)
     }
 
-    pub(super) fn glyph_with(&self, decoder: &mut ModelDecoder, gid: u16) -> Result<Glyph, Error> {
-        let weights = decoder.decode(&self.table, gid, self.scale)?;
-        Ok(Glyph { model: GridFit::new(&weights, self.scale)? })
+    /// Decodes a glyph. Those in `known` are not decoded again as parts of others.
+    pub(super) fn glyph_with(
+        &self,
+        decoder: &mut ModelDecoder,
+        gid: u16,
+        known: impl Fn(u16) -> Option<Arc<GridFit>>,
+    ) -> Result<Glyph, Error> {
+        let model = |decoder: &mut ModelDecoder, gid| match known(gid) {
+            Some(model) => Ok(model),
+            None => {
+                let weights = decoder.decode(&self.table, gid, self.scale)?;
+                GridFit::new(&weights, self.scale).map(Arc::new)
+            }
+        };
+        if !self.table.is_composed(gid) {
+            return Ok(Glyph::of_model(model(decoder, gid)?, self.scale));
+        }
+        let parts = decoder.parts(&self.table, gid, self.scale)?;
+        let parts = parts.iter().map(|part| Ok((model(decoder, part.gid)?, Origin::new(part, self.scale)?)));
+        Ok(Glyph::of_parts(parts.collect::<Result<_, Error>>()?))
     }
 
     #[cfg(feature = "fallback")]
@@ -186,68 +218,4 @@ pub(crate) fn head_units(font: &FontRef<'_>) -> Result<u16, Error> {
             Err(Error::Malformed(format!("table 'head' claims {units} units per em, 16–16384 are allowed")))
         }
     }
-}
-
-/// One glyph's model, decoded and ready to draw at any size.
-#[derive(Debug, Clone)]
-pub struct Glyph {
-    model: GridFit,
-}
-
-impl Glyph {
-    /// Where the bitmap lies at a size in pixels per em, which may be fractional.
-    ///
-    /// # Errors
-    ///
-    /// `InvalidParameter` for a size that is not a positive number, `LimitExceeded` for a bitmap that would
-    /// be too large.
-    pub fn placement(&self, ppem: f32) -> Result<Placement, Error> {
-        self.model.placement(ppem)
-    }
-
-    /// Draws coverage 0–255 into `pixels`, top row first, `placement.width` bytes a row. Bytes beyond the
-    /// bitmap are left alone. Once `scratch` has grown, nothing is allocated.
-    ///
-    /// # Errors
-    ///
-    /// As `placement`, and `InvalidParameter` for a buffer that is too small.
-    pub fn render_into(
-        &self,
-        ppem: f32,
-        scratch: &mut Scratch,
-        pixels: &mut [u8],
-    ) -> Result<Placement, Error> {
-        let placement = self.placement(ppem)?;
-        let pixels = buffer_for(placement, pixels)?;
-        self.model.draw(ppem, placement, scratch, pixels);
-        Ok(placement)
-    }
-
-    /// Draws into a new bitmap.
-    ///
-    /// # Errors
-    ///
-    /// As `placement`.
-    pub fn render(&self, ppem: f32) -> Result<Bitmap, Error> {
-        let placement = self.placement(ppem)?;
-        let mut pixels = vec![0; placement.area()];
-        self.model.draw(ppem, placement, &mut Scratch::default(), &mut pixels);
-        Ok(Bitmap { placement, pixels })
-    }
-
-    /// The memory that the model takes, in bytes.
-    pub fn memory(&self) -> usize {
-        self.model.memory()
-    }
-}
-
-/// The part of a caller's buffer that a bitmap takes.
-pub(super) fn buffer_for(placement: Placement, pixels: &mut [u8]) -> Result<&mut [u8], Error> {
-    let have = pixels.len();
-    pixels.get_mut(..placement.area()).ok_or_else(|| {
-        Error::InvalidParameter(format!(
-            "a buffer of {have} bytes for a bitmap of {}×{}; ask for the placement first",
-            placement.width, placement.height
-        ))
-    })
 }

@@ -1,13 +1,17 @@
 //! From a model to pixels.
 
 mod font;
+mod glyph;
 #[cfg(any(feature = "convert", feature = "fallback"))]
 pub mod outline;
 mod rasterizer;
 
+pub use font::Font;
 #[cfg(feature = "convert")]
 pub(crate) use font::open;
-pub use font::{Font, Glyph};
+pub use glyph::Glyph;
+#[cfg(feature = "convert")]
+pub(crate) use glyph::sum;
 pub use rasterizer::Rasterizer;
 
 /// Where a bitmap lies relative to the pen, in pixels (FreeType's `bitmap_left` and `bitmap_top`).

@@ -20,16 +20,25 @@ pub struct Outline {
 impl Outline {
     /// Multiplies every coordinate by `factor`.
     pub fn scale(&mut self, factor: f32) {
+        self.map(|point| point.map(|v| v * factor));
+    }
+
+    /// Moves the outline.
+    pub fn translate(&mut self, by: [f32; 2]) {
+        self.map(|point| [point[0] + by[0], point[1] + by[1]]);
+    }
+
+    fn map(&mut self, to: impl Fn([f32; 2]) -> [f32; 2]) {
         for point in &mut self.points {
-            *point = point.map(|v| v * factor);
+            *point = to(*point);
         }
-        let scaled = |p: &Vector| Vector::new(p.x * factor, p.y * factor);
+        let moved = |p: &Vector| Vector::from(to([p.x, p.y]));
         for command in &mut self.commands {
             *command = match command {
-                Command::MoveTo(p) => Command::MoveTo(scaled(p)),
-                Command::LineTo(p) => Command::LineTo(scaled(p)),
-                Command::QuadTo(c, p) => Command::QuadTo(scaled(c), scaled(p)),
-                Command::CurveTo(a, b, p) => Command::CurveTo(scaled(a), scaled(b), scaled(p)),
+                Command::MoveTo(p) => Command::MoveTo(moved(p)),
+                Command::LineTo(p) => Command::LineTo(moved(p)),
+                Command::QuadTo(c, p) => Command::QuadTo(moved(c), moved(p)),
+                Command::CurveTo(a, b, p) => Command::CurveTo(moved(a), moved(b), moved(p)),
                 Command::Close => Command::Close,
             };
         }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 #[cfg(feature = "fallback")]
-use super::font::buffer_for;
+use super::glyph::buffer_for;
 use super::{Bitmap, Font, Glyph, Placement};
 use crate::error::Error;
 use crate::model::gridfit::Scratch;
@@ -120,7 +120,8 @@ impl Cache {
     fn get(&mut self, font: &Font<'_>, decoder: &mut ModelDecoder, gid: u16) -> Result<&Glyph, Error> {
         self.clock += 1;
         if !self.glyphs.contains_key(&gid) {
-            let glyph = font.glyph_with(decoder, gid)?;
+            let known = |gid| self.glyphs.get(&gid).and_then(|(_, glyph)| glyph.model());
+            let glyph = font.glyph_with(decoder, gid, known)?;
             let bytes = glyph.memory();
             while self.bytes + bytes > self.limit && !self.glyphs.is_empty() {
                 self.evict();

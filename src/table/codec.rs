@@ -32,7 +32,7 @@ fn predict(how: Predictor, knots: &[i16], known: &[i32], scale: Scale, s: usize,
     // In integers: 2·knot·ppem·steps/units, rounded by adding one half.
     let units = i64::from(scale.units_per_em);
     let scaled = |font_units: i64, steps: i64, s: usize| {
-        let product = font_units * (i64::from(scale.first_ppem) + s as i64) * steps;
+        let product = font_units * scale.ppem_of(s) as i64 * steps;
         (2 * product + units).div_euclid(2 * units) as i32
     };
     let steps = WARP_STEPS as i64;

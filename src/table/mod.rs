@@ -1,15 +1,18 @@
 //! The `Nfrt` table: layout, zero-copy reader, writer. `spec/nfrt.md` describes the bytes.
 
 pub mod codec;
+mod composed;
 mod reader;
 #[cfg(feature = "convert")]
 mod writer;
 
+pub use composed::Gids;
 pub use reader::{ModelDecoder, Table};
 #[cfg(feature = "convert")]
 pub use writer::{GlyphModel, write};
 
 use crate::model::Target;
+use crate::model::gridfit::Scale;
 use read_fonts::types::Tag;
 
 /// The table's tag.
@@ -19,15 +22,23 @@ pub const MAJOR_VERSION: u16 = 1;
 /// Additions that older readers can ignore count this up.
 pub const MINOR_VERSION: u16 = 0;
 /// Bytes before the arrays.
-pub(crate) const HEADER_LEN: usize = 44;
+pub(crate) const HEADER_LEN: usize = 56;
 /// The four bytes that begin a zstd frame; they are left out of the table.
 pub(crate) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
 /// No model decompresses to more than this.
 pub(crate) const MAX_MODEL_BYTES: usize = 1 << 16;
 /// No zstd dictionary is larger than this.
 pub(crate) const MAX_DICTIONARY_BYTES: usize = 1 << 16;
+/// The flag that says that outlines were dropped.
+pub(crate) const OUTLINES_DROPPED: u8 = 1;
+/// No glyph is put together from more parts than this.
+pub const MAX_PARTS: usize = 16;
+/// The places of parts that snap take no more than this, unpacked.
+pub const MAX_SNAP_BYTES: usize = 1 << 20;
 /// The largest trained size, in pixels per em.
 pub const MAX_TRAINED_PPEM: u16 = 1024;
+/// The largest step between trained sizes: the table stores it less one, in a byte.
+pub const MAX_PPEM_STEP: u16 = 256;
 
 /// What a conversion was asked for, as the table records it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,8 +49,12 @@ pub struct Header {
     pub first_ppem: u16,
     /// The largest trained size.
     pub last_ppem: u16,
+    /// Sizes that are left out between one trained size and the next.
+    pub skipped: u8,
     /// FNV-1a of the outlines that the models were trained from.
     pub outline_hash: u64,
+    /// Whether the font has no outlines of the glyphs that it has models for.
+    pub outlines_dropped: bool,
     /// The seed of the training.
     pub seed: u64,
     /// Optimiser steps.
@@ -52,6 +67,21 @@ pub struct Header {
     pub cell: u16,
 }
 
+impl Header {
+    /// The trained sizes as models know them.
+    pub fn scale(&self, units_per_em: u16) -> Scale {
+        Scale {
+            units_per_em,
+            first_ppem: self.first_ppem,
+            last_ppem: self.last_ppem,
+            step: u16::from(self.skipped) + 1,
+        }
+    }
+}
+
+/// The FNV-1a hash of nothing.
+pub const FNV_BASIS: u64 = 0xCBF2_9CE4_8422_2325;
+
 /// FNV-1a, 64 bits, over a byte string; `state` is the hash so far.
 pub fn fnv1a(state: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(state, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3))
@@ -60,5 +90,5 @@ pub fn fnv1a(state: u64, bytes: &[u8]) -> u64 {
 /// The value that ties a table to its font's outlines: FNV-1a over `unitsPerEm` (big-endian) and the bytes of
 /// the `glyf` table.
 pub fn outline_hash(units_per_em: u16, glyf: &[u8]) -> u64 {
-    fnv1a(fnv1a(0xCBF2_9CE4_8422_2325, &units_per_em.to_be_bytes()), glyf)
+    fnv1a(fnv1a(FNV_BASIS, &units_per_em.to_be_bytes()), glyf)
 }

@@ -5,11 +5,13 @@ use read_fonts::types::BigEndian;
 use ruzstd::decoding::{BlockDecodingStrategy, Dictionary, FrameDecoder};
 
 use super::{
-    HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MAX_TRAINED_PPEM, ZSTD_MAGIC,
-    codec,
+    HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MAX_SNAP_BYTES,
+    MAX_TRAINED_PPEM, OUTLINES_DROPPED, ZSTD_MAGIC, codec,
+    composed::{ComposedGlyphs, Gids},
 };
 use crate::error::Error;
 use crate::model::Target;
+use crate::model::compose::Part;
 use crate::model::gridfit::{Scale, Weights};
 
 /// An `Nfrt` table, borrowed from the font's bytes.
@@ -20,6 +22,7 @@ pub struct Table<'a> {
     gids: &'a [BigEndian<u16>],
     bounds: &'a [BigEndian<i16>],
     ends: &'a [BigEndian<u32>],
+    composed: ComposedGlyphs<'a>,
     dictionary: &'a [u8],
     payload: &'a [u8],
 }
@@ -57,19 +60,22 @@ impl<'a> Table<'a> {
             first_ppem: u16_at(6)?,
             last_ppem: u16_at(8)?,
             outline_hash: u64_at(12)?,
+            outlines_dropped: u8_at(5)? & OUTLINES_DROPPED != 0,
             seed: u64_at(20)?,
             steps: u16_at(36)?,
             knots: u8_at(38)?,
             rank: u8_at(39)?,
             cell: u16_at(40)?,
+            skipped: u8_at(42)?,
         };
         if header.first_ppem == 0
             || header.first_ppem > header.last_ppem
             || header.last_ppem > MAX_TRAINED_PPEM
+            || !(header.last_ppem - header.first_ppem).is_multiple_of(u16::from(header.skipped) + 1)
         {
             return Err(Error::Malformed(format!(
-                "table 'Nfrt' claims sizes {}–{} ppem",
-                header.first_ppem, header.last_ppem
+                "table 'Nfrt' claims sizes {}–{} ppem with {} left out between each two; convert the font again",
+                header.first_ppem, header.last_ppem, header.skipped
             )));
         }
         let count = usize::from(u16_at(10)?);
@@ -84,7 +90,7 @@ impl<'a> Table<'a> {
         let ends_at = bounds_at + 8 * count;
         let dictionary_at = ends_at + 4 * count;
         let payload_at = dictionary_at + dictionary_len;
-        let end = payload_at.checked_add(payload_len).ok_or_else(truncated)?;
+        let composed_at = payload_at.checked_add(payload_len).ok_or_else(truncated)?;
         let slice = |range: std::ops::Range<usize>| bytes.get(range).ok_or_else(truncated);
         let table = Self {
             header,
@@ -93,7 +99,8 @@ impl<'a> Table<'a> {
             bounds: data.read_array(bounds_at..ends_at).map_err(|_| truncated())?,
             ends: data.read_array(ends_at..dictionary_at).map_err(|_| truncated())?,
             dictionary: slice(dictionary_at..payload_at)?,
-            payload: slice(payload_at..end)?,
+            payload: slice(payload_at..composed_at)?,
+            composed: ComposedGlyphs::parse(data, composed_at)?,
         };
         Ok(table)
     }
@@ -108,14 +115,19 @@ impl<'a> Table<'a> {
         self.len
     }
 
-    /// The glyphs that have a model, ascending.
-    pub fn gids(&self) -> impl ExactSizeIterator<Item = u16> + 'a {
-        self.gids.iter().map(|gid| gid.get())
+    /// The glyphs that can be drawn, ascending: with a model of their own, or put together from others.
+    pub fn gids(&self) -> Gids<'a> {
+        Gids::new(self.gids, self.composed.gids())
     }
 
-    /// Whether a glyph has a model.
+    /// Whether a glyph can be drawn.
     pub fn contains(&self, gid: u16) -> bool {
-        self.find(gid).is_some()
+        self.find(gid).is_some() || self.is_composed(gid)
+    }
+
+    /// Whether a glyph is put together from the models of others.
+    pub fn is_composed(&self, gid: u16) -> bool {
+        self.composed.find(gid).is_some()
     }
 
     fn find(&self, gid: u16) -> Option<usize> {
@@ -134,13 +146,16 @@ impl<'a> Table<'a> {
         Ok((bounds, bytes))
     }
 
-    /// The bytes that a glyph's compressed model takes.
+    /// The bytes that a glyph's compressed model takes, or the list of its parts.
     ///
     /// # Errors
     ///
     /// `MissingGlyph`, or `Malformed` for an entry that points nowhere.
     pub fn model_len(&self, gid: u16) -> Result<usize, Error> {
-        self.entry(gid).map(|(_, bytes)| bytes.len())
+        match self.composed.find(gid) {
+            Some(index) => self.composed.len_of(index),
+            None => self.entry(gid).map(|(_, bytes)| bytes.len()),
+        }
     }
 }
 
@@ -149,6 +164,8 @@ pub struct ModelDecoder {
     frames: FrameDecoder,
     dictionary: Option<u32>,
     frame: Vec<u8>,
+    /// The places of parts that snap; unpacked when the first composed glyph is asked for.
+    snaps: Option<Vec<i8>>,
 }
 
 impl ModelDecoder {
@@ -167,7 +184,7 @@ impl ModelDecoder {
             dictionary = Some(decoded.id);
             frames.add_dict(decoded).map_err(|e| Error::Malformed(e.to_string()))?;
         }
-        Ok(Self { frames, dictionary, frame: Vec::new() })
+        Ok(Self { frames, dictionary, frame: Vec::new(), snaps: None })
     }
 
     /// Unpacks one glyph's weights.
@@ -177,35 +194,63 @@ impl ModelDecoder {
     /// `MissingGlyph` if the glyph has no model, `Malformed` or `LimitExceeded` if its bytes are damaged.
     pub fn decode(&mut self, table: &Table<'_>, gid: u16, scale: Scale) -> Result<Weights, Error> {
         let (bounds, packed) = table.entry(gid)?;
-        self.frame.clear();
-        self.frame.extend_from_slice(&ZSTD_MAGIC);
-        self.frame.extend_from_slice(packed);
-        let bytes = self.unpack(gid)?;
+        let bytes =
+            self.unpack(packed, self.dictionary, MAX_MODEL_BYTES, &format!("the model of glyph {gid}"))?;
         codec::decode(&bytes, bounds, scale)
     }
 
-    fn unpack(&mut self, gid: u16) -> Result<Vec<u8>, Error> {
-        let damaged = |e: &dyn std::fmt::Display| {
-            Error::Malformed(format!(
-                "the model of glyph {gid} cannot be unpacked ({e}); convert the font again"
-            ))
+    /// Unpacks the parts of a composed glyph. Each is a glyph that has a model of its own.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` if the glyph is not composed, `Malformed` or `LimitExceeded` if its bytes are damaged.
+    pub fn parts(&mut self, table: &Table<'_>, gid: u16, scale: Scale) -> Result<Vec<Part>, Error> {
+        let snaps = match self.snaps.take() {
+            Some(snaps) => snaps,
+            None => {
+                let most = table.composed.snap_count() * scale.sizes();
+                if most > MAX_SNAP_BYTES {
+                    return Err(Error::LimitExceeded(format!("table 'Nfrt' has {most} bytes of places")));
+                }
+                let bytes = match table.composed.packed_snaps() {
+                    [] => Vec::new(),
+                    packed => self.unpack(packed, None, most, "the list of places")?,
+                };
+                bytes.into_iter().map(|byte| byte as i8).collect()
+            }
         };
+        let parts = table.composed.parts(gid, table.gids, &snaps, scale.sizes());
+        self.snaps = Some(snaps);
+        parts
+    }
+
+    fn unpack(
+        &mut self,
+        packed: &[u8],
+        dictionary: Option<u32>,
+        most: usize,
+        what: &str,
+    ) -> Result<Vec<u8>, Error> {
+        let damaged = |e: &dyn std::fmt::Display| {
+            Error::Malformed(format!("{what} cannot be unpacked ({e}); convert the font again"))
+        };
+        self.frame.clear();
+        self.frame.extend_from_slice(&ZSTD_MAGIC);
+        self.frame.extend_from_slice(packed);
         let mut source = self.frame.as_slice();
         self.frames.init(&mut source).map_err(|e| damaged(&e))?;
-        if let Some(id) = self.dictionary {
+        if let Some(id) = dictionary {
             self.frames.force_dict(id).map_err(|e| damaged(&e))?;
         }
         let mut bytes = Vec::new();
         // Frame by frame of at most the limit: what claims to be larger is stopped before it is unpacked.
         while !self.frames.is_finished() {
             self.frames
-                .decode_blocks(&mut source, BlockDecodingStrategy::UptoBytes(MAX_MODEL_BYTES))
+                .decode_blocks(&mut source, BlockDecodingStrategy::UptoBytes(most))
                 .map_err(|e| damaged(&e))?;
             self.frames.collect_to_writer(&mut bytes).map_err(|e| damaged(&e))?;
-            if bytes.len() > MAX_MODEL_BYTES {
-                return Err(Error::LimitExceeded(format!(
-                    "the model of glyph {gid} is larger than any can be"
-                )));
+            if bytes.len() > most {
+                return Err(Error::LimitExceeded(format!("{what} is larger than any can be")));
             }
         }
         self.frames.collect_to_writer(&mut bytes).map_err(|e| damaged(&e))?;

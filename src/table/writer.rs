@@ -1,11 +1,15 @@
 //! Writing the table.
 
+use std::collections::HashMap;
+
+use super::composed::{COUNTS_AT, NO_SNAPS};
 use super::{
-    HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MINOR_VERSION, ZSTD_MAGIC,
-    codec,
+    HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MAX_PARTS, MAX_SNAP_BYTES,
+    MINOR_VERSION, OUTLINES_DROPPED, ZSTD_MAGIC, codec,
 };
 use crate::error::Error;
 use crate::model::Target;
+use crate::model::compose::{Composed, Origin};
 use crate::model::gridfit::{Scale, Weights};
 
 /// zstd's strongest level: models are packed once and are small.
@@ -26,13 +30,19 @@ fn packing(e: &std::io::Error) -> Error {
     Error::Io(format!("zstd cannot pack the models: {e}"))
 }
 
-/// Writes a table. `models` are in ascending order of their glyphs. Returns the table and the length of each
-/// packed model.
+/// Writes a table. `models` and `composed` are in ascending order of their glyphs, and every part has a model.
+/// Returns the table and the length of each packed model.
 ///
 /// # Errors
 ///
-/// `LimitExceeded` for a model that readers would refuse, `Io` if zstd fails.
-pub fn write(header: &Header, models: &[GlyphModel], scale: Scale) -> Result<(Vec<u8>, Vec<usize>), Error> {
+/// `LimitExceeded` for a model or parts that readers would refuse, `InvalidParameter` for a part without a model
+/// or with the wrong number of places, `Io` if zstd fails.
+pub fn write(
+    header: &Header,
+    models: &[GlyphModel],
+    composed: &[Composed],
+    scale: Scale,
+) -> Result<(Vec<u8>, Vec<usize>), Error> {
     let plain: Vec<Vec<u8>> = models.iter().map(|m| plain(m, scale)).collect::<Result<_, _>>()?;
     let mut best = (Vec::new(), pack(&plain, &[])?);
     let total = |(dictionary, packed): &(Vec<u8>, Vec<Vec<u8>>)| {
@@ -50,6 +60,7 @@ pub fn write(header: &Header, models: &[GlyphModel], scale: Scale) -> Result<(Ve
     let (dictionary, packed) = best;
     let mut out = Vec::with_capacity(HEADER_LEN + 14 * models.len() + dictionary.len());
     put_header(&mut out, header, models.len(), dictionary.len(), packed.iter().map(Vec::len).sum());
+    out.resize(HEADER_LEN, 0);
     out.extend(models.iter().flat_map(|m| m.gid.to_be_bytes()));
     out.extend(models.iter().flat_map(|m| m.weights.bounds).flat_map(i16::to_be_bytes));
     let mut end = 0u32;
@@ -59,6 +70,7 @@ pub fn write(header: &Header, models: &[GlyphModel], scale: Scale) -> Result<(Ve
     }
     out.extend_from_slice(&dictionary);
     out.extend(packed.iter().flatten());
+    put_composed(&mut out, models, composed, scale)?;
     Ok((out, packed.iter().map(Vec::len).collect()))
 }
 
@@ -84,7 +96,7 @@ fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, dictionary: usi
     };
     out.extend(MAJOR_VERSION.to_be_bytes());
     out.extend(MINOR_VERSION.to_be_bytes());
-    out.extend([target, 0]);
+    out.extend([target, if header.outlines_dropped { OUTLINES_DROPPED } else { 0 }]);
     out.extend(header.first_ppem.to_be_bytes());
     out.extend(header.last_ppem.to_be_bytes());
     out.extend((glyphs as u16).to_be_bytes());
@@ -95,8 +107,68 @@ fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, dictionary: usi
     out.extend(header.steps.to_be_bytes());
     out.extend([header.knots, header.rank]);
     out.extend(header.cell.to_be_bytes());
-    out.extend([0, 0]);
-    debug_assert_eq!(out.len(), HEADER_LEN);
+    out.extend([header.skipped, 0]);
+    debug_assert_eq!(out.len(), COUNTS_AT);
+}
+
+/// Appends the composed glyphs and fills their counts in.
+fn put_composed(
+    out: &mut Vec<u8>,
+    models: &[GlyphModel],
+    composed: &[Composed],
+    scale: Scale,
+) -> Result<(), Error> {
+    let mut lists: Vec<&[i8]> = Vec::new();
+    let mut known: HashMap<&[i8], u16> = HashMap::new();
+    let (mut ends, mut parts, mut count) = (Vec::new(), Vec::new(), 0u32);
+    for glyph in composed {
+        if glyph.parts.len() > MAX_PARTS {
+            let (gid, parts) = (glyph.gid, glyph.parts.len());
+            return Err(Error::LimitExceeded(format!(
+                "glyph {gid} has {parts} parts, {MAX_PARTS} are allowed"
+            )));
+        }
+        for part in &glyph.parts {
+            Origin::new(part, scale).map_err(|_| {
+                Error::InvalidParameter(format!("a part of glyph {} lacks places", glyph.gid))
+            })?;
+            let model = models.binary_search_by_key(&part.gid, |m| m.gid).map_err(|_| {
+                let (gid, part) = (glyph.gid, part.gid);
+                Error::InvalidParameter(format!("glyph {gid} has glyph {part} as a part, which has no model"))
+            })?;
+            let snaps = part.snaps.each_ref().map(|snaps| match snaps.as_slice() {
+                [] => NO_SNAPS,
+                list => *known.entry(list).or_insert_with(|| {
+                    lists.push(list);
+                    (lists.len() - 1) as u16
+                }),
+            });
+            parts.extend((model as u16).to_be_bytes());
+            parts.extend(part.offset.into_iter().flat_map(i16::to_be_bytes));
+            parts.extend(snaps.into_iter().flat_map(u16::to_be_bytes));
+            count += 1;
+        }
+        ends.extend(count.to_be_bytes());
+    }
+    if lists.len() >= usize::from(NO_SNAPS) || lists.len() * scale.sizes() > MAX_SNAP_BYTES {
+        return Err(Error::LimitExceeded(format!(
+            "{} lists of parts' places; convert fewer glyphs",
+            lists.len()
+        )));
+    }
+    let places: Vec<u8> = lists.iter().copied().flatten().map(|place| *place as u8).collect();
+    let packed = if places.is_empty() { Vec::new() } else { pack(&[places], &[])?.concat() };
+    let mut counts = Vec::with_capacity(HEADER_LEN - COUNTS_AT);
+    counts.extend((composed.len() as u16).to_be_bytes());
+    counts.extend((lists.len() as u16).to_be_bytes());
+    counts.extend(count.to_be_bytes());
+    counts.extend((packed.len() as u32).to_be_bytes());
+    out[COUNTS_AT..HEADER_LEN].copy_from_slice(&counts);
+    out.extend(composed.iter().flat_map(|glyph| glyph.gid.to_be_bytes()));
+    out.extend(ends);
+    out.extend(parts);
+    out.extend(packed);
+    Ok(())
 }
 
 /// Packs each model on its own, without zstd's magic number, checksum and dictionary number.

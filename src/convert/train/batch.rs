@@ -222,7 +222,7 @@ impl LineLists {
         at: f32,
         grid: GridAxis,
     ) {
-        let ppem = f32::from(scale.first_ppem) + size as f32;
+        let ppem = scale.ppem_of(size) as f32;
         let n = samples_per_pixel(ppem) as f32;
         self.at.push(at);
         self.reach.push(SLOPE_REACH / n);

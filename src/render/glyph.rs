@@ -1,0 +1,190 @@
+//! A glyph that is ready to draw: one model, or several at places of their own.
+
+use std::sync::Arc;
+
+use super::{Bitmap, Placement};
+use crate::error::Error;
+use crate::model::compose::Origin;
+use crate::model::gridfit::{GridFit, MAX_SIDE, Scale, Scratch};
+
+/// One glyph, decoded and ready to draw at any size.
+#[derive(Debug, Clone)]
+pub struct Glyph {
+    parts: Vec<(Arc<GridFit>, Origin)>,
+}
+
+impl Glyph {
+    /// A glyph that has a model of its own.
+    pub(crate) fn of_model(model: Arc<GridFit>, scale: Scale) -> Self {
+        Self { parts: vec![(model, Origin::zero(scale))] }
+    }
+
+    /// A glyph that is put together from others' models.
+    pub(crate) fn of_parts(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
+        Self { parts }
+    }
+
+    /// The first part's model, to be shared with other glyphs.
+    pub(super) fn model(&self) -> Option<Arc<GridFit>> {
+        self.parts.first().map(|(model, _)| model.clone())
+    }
+
+    /// Where the bitmap lies at a size in pixels per em, which may be fractional.
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter` for a size that is not a positive number, `LimitExceeded` for a bitmap that would
+    /// be too large.
+    pub fn placement(&self, ppem: f32) -> Result<Placement, Error> {
+        let mut whole = Placement::default();
+        for (model, origin) in &self.parts {
+            whole = union(whole, model.placement_at(ppem, origin.at(ppem))?);
+        }
+        if whole.width > MAX_SIDE || whole.height > MAX_SIDE {
+            return Err(Error::LimitExceeded(format!(
+                "a bitmap of {}×{} pixels at {ppem} ppem",
+                whole.width, whole.height
+            )));
+        }
+        Ok(whole)
+    }
+
+    /// Draws coverage 0–255 into `pixels`, top row first, `placement.width` bytes a row. Bytes beyond the
+    /// bitmap are left alone. Once `scratch` has grown, nothing is allocated.
+    ///
+    /// # Errors
+    ///
+    /// As `placement`, and `InvalidParameter` for a buffer that is too small.
+    pub fn render_into(
+        &self,
+        ppem: f32,
+        scratch: &mut Scratch,
+        pixels: &mut [u8],
+    ) -> Result<Placement, Error> {
+        let placement = self.placement(ppem)?;
+        let pixels = buffer_for(placement, pixels)?;
+        self.draw(ppem, placement, scratch, pixels)?;
+        Ok(placement)
+    }
+
+    /// Draws into a new bitmap.
+    ///
+    /// # Errors
+    ///
+    /// As `placement`.
+    pub fn render(&self, ppem: f32) -> Result<Bitmap, Error> {
+        let placement = self.placement(ppem)?;
+        let mut pixels = vec![0; placement.area()];
+        self.draw(ppem, placement, &mut Scratch::default(), &mut pixels)?;
+        Ok(Bitmap { placement, pixels })
+    }
+
+    fn draw(
+        &self,
+        ppem: f32,
+        placement: Placement,
+        scratch: &mut Scratch,
+        pixels: &mut [u8],
+    ) -> Result<(), Error> {
+        if let [(model, origin)] = self.parts.as_slice() {
+            model.draw_at(ppem, origin.at(ppem), placement, scratch, pixels);
+            return Ok(());
+        }
+        pixels.fill(0);
+        let mut layer = std::mem::take(&mut scratch.layer);
+        for (model, origin) in &self.parts {
+            let origin = origin.at(ppem);
+            let place = model.placement_at(ppem, origin)?;
+            layer.clear();
+            layer.resize(place.area(), 0);
+            model.draw_at(ppem, origin, place, scratch, &mut layer);
+            add(placement, pixels, place, &layer);
+        }
+        scratch.layer = layer;
+        Ok(())
+    }
+
+    /// The memory that the models take, in bytes. A model that several glyphs share counts in each of them.
+    pub fn memory(&self) -> usize {
+        self.parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum()
+    }
+}
+
+/// The box around two bitmaps; one without pixels takes no room.
+fn union(a: Placement, b: Placement) -> Placement {
+    match (a.area(), b.area()) {
+        (0, _) => return b,
+        (_, 0) => return a,
+        _ => {}
+    }
+    let right = |p: Placement| i64::from(p.left) + i64::from(p.width);
+    let bottom = |p: Placement| i64::from(p.top) - i64::from(p.height);
+    let (left, top) = (a.left.min(b.left), a.top.max(b.top));
+    let length = |length: i64| u32::try_from(length).unwrap_or(u32::MAX);
+    Placement {
+        left,
+        top,
+        width: length(right(a).max(right(b)) - i64::from(left)),
+        height: length(i64::from(top) - bottom(a).min(bottom(b))),
+    }
+}
+
+/// The bitmap that parts add up to.
+#[cfg(feature = "convert")]
+pub(crate) fn sum(parts: &[Bitmap]) -> Bitmap {
+    let placement = parts.iter().fold(Placement::default(), |whole, part| union(whole, part.placement));
+    let mut pixels = vec![0; placement.area()];
+    parts.iter().for_each(|part| add(placement, &mut pixels, part.placement, &part.pixels));
+    Bitmap { placement, pixels }
+}
+
+/// Adds a part's coverage to a bitmap that has room for it. Parts that only touch cover a pixel together, and
+/// where they overlap the ink is full anyway.
+fn add(whole: Placement, pixels: &mut [u8], place: Placement, layer: &[u8]) {
+    if place.area() == 0 {
+        return;
+    }
+    let (row, column) = ((whole.top - place.top) as usize, (place.left - whole.left) as usize);
+    let (width, stride) = (place.width as usize, whole.width as usize);
+    let rows = pixels.chunks_exact_mut(stride).skip(row);
+    for (pixels, layer) in rows.zip(layer.chunks_exact(width)) {
+        for (pixel, more) in pixels[column..column + width].iter_mut().zip(layer) {
+            *pixel = pixel.saturating_add(*more);
+        }
+    }
+}
+
+/// The part of a caller's buffer that a bitmap takes.
+pub(super) fn buffer_for(placement: Placement, pixels: &mut [u8]) -> Result<&mut [u8], Error> {
+    let have = pixels.len();
+    pixels.get_mut(..placement.area()).ok_or_else(|| {
+        Error::InvalidParameter(format!(
+            "a buffer of {have} bytes for a bitmap of {}×{}; ask for the placement first",
+            placement.width, placement.height
+        ))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: Placement = Placement { left: -1, top: 2, width: 2, height: 2 };
+    const B: Placement = Placement { left: 0, top: 3, width: 2, height: 2 };
+
+    #[test]
+    fn the_union_holds_both_boxes_and_ignores_empty_ones() {
+        let empty = Placement { left: 50, top: 50, ..Placement::default() };
+        assert_eq!(union(A, B), Placement { left: -1, top: 3, width: 3, height: 3 });
+        assert_eq!((union(A, empty), union(empty, B)), (A, B));
+    }
+
+    #[test]
+    fn coverage_adds_up_to_full_and_no_further() {
+        let whole = union(A, B);
+        let mut pixels = [0; 9];
+        add(whole, &mut pixels, A, &[10, 200, 30, 40]);
+        add(whole, &mut pixels, B, &[1, 2, 100, 3]);
+        assert_eq!(pixels, [0, 1, 2, 10, 255, 3, 30, 40, 0]);
+    }
+}

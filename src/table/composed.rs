@@ -1,0 +1,168 @@
+//! The part of the table about composed glyphs: which they are, and what each is put together from.
+//!
+//! Parts refer to models by their position in the table, so that a part can be nothing but a glyph with a model
+//! of its own.
+
+use read_fonts::FontData;
+use read_fonts::types::BigEndian;
+
+use super::MAX_PARTS;
+use crate::error::Error;
+use crate::model::compose::Part;
+
+/// The 16-bit numbers of a part: model, offset in x and y, places in x and y.
+pub(super) const PART_NUMBERS: usize = 5;
+/// Stands for no places: the part does not snap.
+pub(super) const NO_SNAPS: u16 = u16::MAX;
+/// How many composed glyphs, parts and lists of places there are, and the length of those lists, packed.
+pub(super) const COUNTS_AT: usize = 44;
+
+/// The composed glyphs of a table.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ComposedGlyphs<'a> {
+    gids: &'a [BigEndian<u16>],
+    /// Where each glyph's parts end.
+    ends: &'a [BigEndian<u32>],
+    parts: &'a [BigEndian<u16>],
+    snap_count: u16,
+    snaps: &'a [u8],
+}
+
+fn truncated() -> Error {
+    Error::Malformed("the composed glyphs of table 'Nfrt' lie outside it; convert the font again".into())
+}
+
+impl<'a> ComposedGlyphs<'a> {
+    /// Finds the arrays, which begin at `at`.
+    pub(super) fn parse(data: FontData<'a>, at: usize) -> Result<Self, Error> {
+        let u16_at = |at| data.read_at::<u16>(at).map_err(|_| truncated());
+        let u32_at = |at| data.read_at::<u32>(at).map_err(|_| truncated());
+        let count = usize::from(u16_at(COUNTS_AT)?);
+        let snap_count = u16_at(COUNTS_AT + 2)?;
+        let (part_count, snap_bytes) = (u32_at(COUNTS_AT + 4)? as usize, u32_at(COUNTS_AT + 8)? as usize);
+        let after = |at: usize, count: usize, size: usize| {
+            count.checked_mul(size).and_then(|length| at.checked_add(length)).ok_or_else(truncated)
+        };
+        let ends_at = after(at, count, 2)?;
+        let parts_at = after(ends_at, count, 4)?;
+        let snaps_at = after(parts_at, part_count, 2 * PART_NUMBERS)?;
+        let end = after(snaps_at, snap_bytes, 1)?;
+        Ok(Self {
+            gids: data.read_array(at..ends_at).map_err(|_| truncated())?,
+            ends: data.read_array(ends_at..parts_at).map_err(|_| truncated())?,
+            parts: data.read_array(parts_at..snaps_at).map_err(|_| truncated())?,
+            snap_count,
+            snaps: data.as_bytes().get(snaps_at..end).ok_or_else(truncated)?,
+        })
+    }
+
+    pub(super) fn gids(&self) -> &'a [BigEndian<u16>] {
+        self.gids
+    }
+
+    /// How many lists of places there are.
+    pub(super) fn snap_count(&self) -> usize {
+        self.snap_count.into()
+    }
+
+    pub(super) fn packed_snaps(&self) -> &'a [u8] {
+        self.snaps
+    }
+
+    pub(super) fn find(&self, gid: u16) -> Option<usize> {
+        self.gids.binary_search_by_key(&gid, |g| g.get()).ok()
+    }
+
+    /// The numbers of a glyph's parts.
+    fn numbers(&self, index: usize) -> Result<&'a [BigEndian<u16>], Error> {
+        let gid = self.gids[index].get();
+        let start = if index == 0 { 0 } else { self.ends[index - 1].get() as usize };
+        let range = start.saturating_mul(PART_NUMBERS)
+            ..(self.ends[index].get() as usize).saturating_mul(PART_NUMBERS);
+        let numbers = self.parts.get(range).ok_or_else(|| {
+            Error::Malformed(format!(
+                "the parts of glyph {gid} lie outside the table; convert the font again"
+            ))
+        })?;
+        if numbers.len() > MAX_PARTS * PART_NUMBERS {
+            let parts = numbers.len() / PART_NUMBERS;
+            return Err(Error::LimitExceeded(format!(
+                "glyph {gid} has {parts} parts, {MAX_PARTS} are allowed"
+            )));
+        }
+        Ok(numbers)
+    }
+
+    /// The bytes of a glyph's entry.
+    pub(super) fn len_of(&self, index: usize) -> Result<usize, Error> {
+        Ok(size_of::<u16>() + size_of::<u32>() + size_of_val(self.numbers(index)?))
+    }
+
+    /// A glyph's parts. `models` are the glyphs that have models, `snaps` the lists of places one after the
+    /// other, each of `sizes` values.
+    pub(super) fn parts(
+        &self,
+        gid: u16,
+        models: &[BigEndian<u16>],
+        snaps: &[i8],
+        sizes: usize,
+    ) -> Result<Vec<Part>, Error> {
+        let numbers = self.numbers(self.find(gid).ok_or(Error::MissingGlyph(gid))?)?;
+        let dangling = |what: &str| {
+            Error::Malformed(format!("glyph {gid} has a part without {what}; convert the font again"))
+        };
+        let list = |at: u16| match at {
+            NO_SNAPS => Ok(Vec::new()),
+            at => {
+                let start = usize::from(at) * sizes;
+                snaps.get(start..start + sizes).map(<[i8]>::to_vec).ok_or_else(|| dangling("places"))
+            }
+        };
+        numbers
+            .chunks_exact(PART_NUMBERS)
+            .map(|part| {
+                let number = |k: usize| part[k].get();
+                Ok(Part {
+                    gid: models.get(usize::from(number(0))).ok_or_else(|| dangling("a model"))?.get(),
+                    offset: [number(1) as i16, number(2) as i16],
+                    snaps: [list(number(3))?, list(number(4))?],
+                })
+            })
+            .collect()
+    }
+}
+
+/// Two ascending lists of glyphs, merged.
+#[derive(Debug, Clone)]
+pub struct Gids<'a> {
+    a: &'a [BigEndian<u16>],
+    b: &'a [BigEndian<u16>],
+}
+
+impl<'a> Gids<'a> {
+    pub(super) fn new(a: &'a [BigEndian<u16>], b: &'a [BigEndian<u16>]) -> Self {
+        Self { a, b }
+    }
+}
+
+impl Iterator for Gids<'_> {
+    type Item = u16;
+
+    fn next(&mut self) -> Option<u16> {
+        let from = match (self.a.first(), self.b.first()) {
+            (Some(a), Some(b)) if b.get() < a.get() => &mut self.b,
+            (Some(_), _) => &mut self.a,
+            (None, _) => &mut self.b,
+        };
+        let (first, rest) = from.split_first()?;
+        *from = rest;
+        Some(first.get())
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = self.a.len() + self.b.len();
+        (left, Some(left))
+    }
+}
+
+impl ExactSizeIterator for Gids<'_> {}
