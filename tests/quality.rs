@@ -17,8 +17,6 @@ use samples::{Silent, font, gids};
 const TEXT: &str = "egR%8";
 /// A small part of the default training.
 const STEPS: usize = 120;
-/// Roboto's own `prep` program switches its hints off below this size.
-const ROBOTO_HINTED_FROM: u16 = 9;
 
 /// What a font's glyphs may differ from the teacher by, as a share of what the unhinted outlines differ by, and how
 /// many bytes a glyph may take, of a table that only a few glyphs share.
@@ -43,10 +41,7 @@ fn options(data: &[u8], text: &str, target: Target, steps: usize) -> Options {
 
 fn measure(name: &str, target: Target) -> Measured {
     let data = font(name);
-    let mut options = options(&data, TEXT, target, STEPS);
-    if name.starts_with("Roboto") {
-        options.ppem = ROBOTO_HINTED_FROM..=*options.ppem.end();
-    }
+    let options = options(&data, TEXT, target, STEPS);
     let conversion = convert(&data, &options, &Silent).unwrap();
     let neural = Font::parse(&conversion.font).unwrap();
     let mut rasterizer = Rasterizer::new(&neural).unwrap();

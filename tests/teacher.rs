@@ -158,15 +158,26 @@ fn a_variable_font_is_refused() {
 }
 
 #[test]
-fn a_size_at_which_prep_switches_hinting_off_is_refused() {
+fn a_size_at_which_prep_switches_hinting_off_says_so_and_shows_the_plain_outline() {
     // PUSHB[1] 1 1, INSTCTRL: selector 1 ("inhibit grid-fitting") on.
     let data = altered(&[(b"prep", vec![0xB1, 1, 1, 0x8E])], &[]);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), Target::Smooth).unwrap();
-    let error = teacher.at(16).err().expect("the size was accepted");
+    let at = teacher.at(16).unwrap();
+    assert!(!at.is_hinted());
+    let gid = gid(&data, 'g');
+    assert_eq!(at.hinted(gid).unwrap().points, teacher.unhinted(gid, 16.0).unwrap().points);
+    let original = font("LiberationSans-Regular");
     assert!(
-        matches!(&error, Error::Unsupported(text) if text.contains("switches hinting off at 16")),
-        "{error}"
+        Teacher::new(&FontRef::new(&original).unwrap(), Target::Smooth).unwrap().at(16).unwrap().is_hinted()
     );
+}
+
+#[test]
+fn a_font_that_switches_hinting_off_at_all_sizes_teaches_nothing() {
+    let data = altered(&[(b"prep", vec![0xB1, 1, 1, 0x8E])], &[]);
+    let options = nfr::convert::Options { gids: vec![gid(&data, 'g')], ppem: 12..=13, ..Default::default() };
+    let error = nfr::convert::convert(&data, &options, &samples::Silent).unwrap_err();
+    assert!(matches!(&error, Error::Unsupported(text) if text.contains("at all of these sizes")), "{error}");
 }
 
 #[test]

@@ -10,7 +10,7 @@ use super::compose::Plan;
 use super::course::Course;
 use super::partial::Partial;
 use super::start::Capacity;
-use super::teacher::Teacher;
+use super::teacher::{Teacher, TeacherAt};
 use super::train::{Backend, Schedule};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
@@ -148,6 +148,7 @@ pub fn resume(
     let sizes = (0..scale.sizes())
         .map(|size| teacher.at(scale.ppem_of(size) as u16))
         .collect::<Result<Vec<_>, _>>()?;
+    warn_of_unhinted(&sizes, progress)?;
     let plan = if options.compose {
         Plan::find(&font, &teacher, &sizes, scale, &options.gids)?
     } else {
@@ -182,6 +183,25 @@ fn reports(table: &Table<'_>, judged: &BTreeMap<u16, Sums>) -> Result<Vec<GlyphR
     judged.iter().map(report).collect()
 }
 
+/// Tells at which sizes the font switches its hints off. A font that does so at all of them teaches nothing.
+fn warn_of_unhinted(sizes: &[TeacherAt<'_, '_>], progress: &dyn Progress) -> Result<(), Error> {
+    let off: Vec<String> =
+        sizes.iter().filter(|at| !at.is_hinted()).map(|at| at.ppem().to_string()).collect();
+    if off.len() == sizes.len() {
+        return Err(Error::Unsupported(
+            "the font's 'prep' program switches hinting off at all of these sizes; choose others with --ppem"
+                .into(),
+        ));
+    }
+    if !off.is_empty() {
+        progress.warn(&format!(
+            "the font's 'prep' program switches hinting off at {} ppem; the plain outlines are learnt there",
+            off.join(", ")
+        ));
+    }
+    Ok(())
+}
+
 fn check(options: &Options) -> Result<(), Error> {
     let wrong = |what: String| Err(Error::InvalidParameter(what));
     if options.gids.is_empty() {
@@ -204,7 +224,7 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
     Ok(Header {
         target: options.target,
         first_ppem: *options.ppem.start(),
-        last_ppem: options.ppem.clone().step_by(options.ppem_step.into()).last().unwrap_or(0),
+        last_ppem: options.ppem.clone().step_by(options.ppem_step.into()).next_back().unwrap_or(0),
         skipped: (options.ppem_step - 1) as u8,
         outline_hash: outline_hash(font)?,
         outlines_dropped: options.drop_outlines,

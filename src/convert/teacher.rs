@@ -75,11 +75,12 @@ impl<'a> Teacher<'a> {
         self.target
     }
 
-    /// Sets the interpreter up for one size: runs `fpgm` and `prep`.
+    /// Sets the interpreter up for one size: runs `fpgm` and `prep`. If the font switches hinting off at this
+    /// size, [`TeacherAt::is_hinted`] tells, and what it shows is the plain outline, as in other renderers.
     ///
     /// # Errors
     ///
-    /// `Malformed` if a program fails; `Unsupported` if the font switches hinting off at this size.
+    /// `Malformed` if a program fails.
     pub fn at(&self, ppem: u16) -> Result<TeacherAt<'_, 'a>, Error> {
         check_ppem(f32::from(ppem))?;
         let options = HintingOptions { engine: Engine::Interpreter, target: skrifa_target(self.target) };
@@ -88,11 +89,7 @@ impl<'a> Teacher<'a> {
             HintingInstance::new(&self.outlines, size, LocationRef::default(), options).map_err(|e| {
                 Error::Malformed(format!("the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"))
             })?;
-        if !hinting.is_enabled() {
-            return Err(Error::Unsupported(format!(
-                "the font's own 'prep' program switches hinting off at {ppem} ppem; leave that size out of --ppem"
-            )));
-        }
+        let hinting = hinting.is_enabled().then_some(hinting);
         Ok(TeacherAt { teacher: self, hinting, ppem })
     }
 
@@ -132,7 +129,7 @@ impl<'a> Teacher<'a> {
 /// The teacher at one size.
 pub struct TeacherAt<'t, 'a> {
     teacher: &'t Teacher<'a>,
-    hinting: HintingInstance,
+    hinting: Option<HintingInstance>,
     ppem: u16,
 }
 
@@ -140,6 +137,11 @@ impl TeacherAt<'_, '_> {
     /// The size in pixels per em.
     pub fn ppem(&self) -> u16 {
         self.ppem
+    }
+
+    /// Whether the font wants hinting at this size; its `prep` program can switch it off.
+    pub fn is_hinted(&self) -> bool {
+        self.hinting.is_some()
     }
 
     /// The hinted outline.
@@ -159,11 +161,12 @@ impl TeacherAt<'_, '_> {
     /// As `hinted`.
     pub fn hinted_or_complaint(&self, gid: u16) -> Result<(Outline, Option<String>), Error> {
         let ppem = f32::from(self.ppem);
-        match self.teacher.draw(gid, DrawSettings::hinted(&self.hinting, true), ppem) {
+        let Some(hinting) = &self.hinting else { return Ok((self.teacher.unhinted(gid, ppem)?, None)) };
+        match self.teacher.draw(gid, DrawSettings::hinted(hinting, true), ppem) {
             Ok(outline) => Ok((outline, None)),
             Err(error @ Error::MissingGlyph(_)) => Err(error),
             Err(error) => {
-                let outline = self.teacher.draw(gid, DrawSettings::hinted(&self.hinting, false), ppem)?;
+                let outline = self.teacher.draw(gid, DrawSettings::hinted(hinting, false), ppem)?;
                 Ok((outline, Some(format!("{error}; other renderers ignore that, and so does the model"))))
             }
         }
