@@ -7,13 +7,13 @@ mod common;
 mod samples;
 
 use std::collections::BTreeSet;
-use std::sync::Mutex;
 
 use nfr::compare::fonts::FontPair;
 use nfr::compare::metrics::Sums;
+use nfr::convert::assemble::assemble;
 use nfr::convert::partial::Partial;
 use nfr::convert::teacher::Teacher;
-use nfr::convert::{Conversion, Options, Progress, convert, resume};
+use nfr::convert::{Conversion, Options, convert, resume};
 use nfr::{Error, Font, Rasterizer, Scratch, Target};
 use read_fonts::types::GlyphId;
 use read_fonts::{FontRef, TableProvider};
@@ -130,16 +130,6 @@ fn options_of_resumed(data: &[u8]) -> Options {
     Options { ppem: 10..=14, ..options(data, RESUMED, STEPS) }
 }
 
-/// Counts glyphs that are trained: others are ready at once, before the first of these.
-#[derive(Default)]
-struct Order(Mutex<Vec<u16>>);
-
-impl Progress for Order {
-    fn glyph_done(&self, gid: u16, _: f64) {
-        self.0.lock().unwrap().push(gid);
-    }
-}
-
 #[test]
 fn an_interrupted_conversion_gives_the_same_font_wherever_its_file_was_cut_off() {
     let data = sans();
@@ -159,6 +149,7 @@ fn an_interrupted_conversion_gives_the_same_font_wherever_its_file_was_cut_off()
         found.insert(partial.found());
         let resumed = resume(&data, &options, &Silent, Some(&partial)).unwrap();
         assert!(resumed.font == whole.font && resumed.sums == whole.sums, "cut off at {cut}");
+        // What was found was not trained again, or the file would be longer.
         assert_eq!(std::fs::read(&path).unwrap().len(), bytes.len(), "cut off at {cut}");
         partial.remove().unwrap();
         assert!(directory.files().is_empty());
@@ -183,7 +174,7 @@ fn a_damaged_record_and_what_follows_are_trained_again() {
     std::fs::write(&path, &bytes).unwrap();
     let partial = Partial::open(&path, &data, &options, true).unwrap();
     assert!((1..whole.glyphs.len() - 1).contains(&partial.found()), "{}", partial.found());
-    assert!(resume(&data, &options, &Order::default(), Some(&partial)).unwrap().font == whole.font);
+    assert!(resume(&data, &options, &Silent, Some(&partial)).unwrap().font == whole.font);
 }
 
 #[test]
@@ -258,6 +249,24 @@ fn dropped_outlines_leave_blanks_that_other_programs_read() {
     assert!(FontPair::open(&data, 0, &dropped.font).is_ok());
     let other = std::fs::read(SANS.replace("Sans-", "Serif-")).unwrap();
     assert!(matches!(FontPair::open(&other, 0, &dropped.font), Err(Error::InvalidParameter(_))));
+}
+
+#[test]
+fn a_font_may_lose_all_its_outlines() {
+    let data = sans();
+    let file = FontRef::new(&data).unwrap();
+    let all = (0..file.maxp().unwrap().num_glyphs()).collect();
+    let blank = assemble(&file, b"models", &all).unwrap();
+    let font = FontRef::new(&blank).unwrap();
+    let (loca, glyf) = (font.loca(None).unwrap(), font.glyf().unwrap());
+    assert!(all.iter().all(|gid| loca.get_glyf(GlyphId::from(*gid), &glyf).unwrap().is_none()));
+    let library = freetype::Library::init().unwrap();
+    let face = library.new_memory_face(blank.clone(), 0).unwrap();
+    face.set_pixel_sizes(0, 20).unwrap();
+    for gid in all {
+        face.load_glyph(gid.into(), freetype::face::LoadFlag::RENDER).unwrap();
+        assert_eq!(face.glyph().bitmap().width(), 0);
+    }
 }
 
 #[test]

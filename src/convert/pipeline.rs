@@ -221,10 +221,11 @@ fn check(options: &Options) -> Result<(), Error> {
 }
 
 fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
+    let (first, last) = options.ppem.clone().into_inner();
     Ok(Header {
         target: options.target,
-        first_ppem: *options.ppem.start(),
-        last_ppem: options.ppem.clone().step_by(options.ppem_step.into()).next_back().unwrap_or(0),
+        first_ppem: first,
+        last_ppem: last - (last - first) % options.ppem_step,
         skipped: (options.ppem_step - 1) as u8,
         outline_hash: outline_hash(font)?,
         outlines_dropped: options.drop_outlines,
