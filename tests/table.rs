@@ -353,7 +353,7 @@ fn damaged(data: &[u8], from: usize, to: usize, damage: &[(prop::sample::Index, 
 }
 
 proptest! {
-    // A longer session: PROPTEST_CASES=1000000 cargo test --release --test table damage_to
+    // A longer run: PROPTEST_CASES=1000000 cargo test --release --test table damage_to
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
