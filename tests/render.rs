@@ -151,19 +151,22 @@ fn ink(bitmap: &Bitmap) -> f32 {
 
 /// A size between two others may have this much less or more ink than either, as a share: hinted stems jump by
 /// whole pixels, and halfway through such a jump their edges are soft.
-const BETWEEN: f32 = 0.08;
+const BETWEEN: f32 = 0.06;
+/// The same for `%`, whose two rings jump at different sizes and by different pixels: known to be too much.
+const BETWEEN_RINGS: f32 = 0.08;
 
 #[test]
 fn a_size_between_two_trained_ones_lies_between_them() {
     let font = neural();
     for gid in letters() {
+        let slack = if gid == samples::gid(&ORIGINAL, '%') { BETWEEN_RINGS } else { BETWEEN };
         let glyph = font.glyph(gid).unwrap();
         for ppem in (8u8..64).map(f32::from) {
             let [low, between, high] = [0.0, 0.5, 1.0].map(|more| glyph.render(ppem + more).unwrap());
             let (least, most) = (ink(&low).min(ink(&high)), ink(&low).max(ink(&high)));
             let found = ink(&between);
             assert!(
-                found >= least * (1.0 - BETWEEN) && found <= most * (1.0 + BETWEEN),
+                found >= least * (1.0 - slack) && found <= most * (1.0 + slack),
                 "glyph {gid} at {} ppem: {found} is not in {least}..{most}",
                 ppem + 0.5
             );
