@@ -1,7 +1,9 @@
 //! Converts fonts and prints how close the models come, as a Markdown table.
 //!
-//! `cargo run --release --example figures [-- FONT.ttf ...]`: printable ASCII at 8–64 ppem; without arguments,
-//! the three fonts that README speaks of. The error is measured on the finished files.
+//! `cargo run --release --example figures [-- OPTIONS] [FONT.ttf ...]`: printable ASCII at 8–64 ppem; without fonts,
+//! the three that README speaks of. `--quality 0,25,50,75,100` prints a line for each of these settings, and
+//! `--target mono` hints in x too. `--train-ppem 8-64:2` learns from these sizes alone and tells the others' error.
+//! The error is measured on the finished files.
 
 #![allow(clippy::print_stdout)]
 
@@ -9,11 +11,35 @@ use std::error::Error;
 use std::thread::available_parallelism;
 use std::time::Instant;
 
+use clap::Parser;
+use nfr::Target;
 use nfr::compare::fonts::FontPair;
-use nfr::convert::{Options, Progress, convert};
+use nfr::convert::ppem::PpemList;
+use nfr::convert::{Options, Progress, Quality, convert};
 
 const FONTS: [&str; 3] =
     ["fonts/LiberationSans-Regular.ttf", "fonts/LiberationSerif-Regular.ttf", "fonts/DejaVuSans.ttf"];
+
+#[derive(Parser)]
+struct Args {
+    /// The fonts to convert
+    fonts: Vec<String>,
+    /// Qualities to convert them with, 0 to 100
+    #[arg(long, value_delimiter = ',', default_value = "50")]
+    quality: Vec<f32>,
+    /// What to hint for
+    #[arg(long, default_value_t)]
+    target: Target,
+    /// The sizes to learn
+    #[arg(long, default_value = "8-64")]
+    train_ppem: PpemList,
+    /// The sizes to measure, other than those to learn if those have a step
+    #[arg(long)]
+    ppem: Option<PpemList>,
+    /// The characters
+    #[arg(long, default_value = "U+21-7E")]
+    unicodes: String,
+}
 
 struct Silent;
 
@@ -22,35 +48,56 @@ impl Progress for Silent {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let given: Vec<String> = std::env::args().skip(1).collect();
-    let fonts = if given.is_empty() { FONTS.map(String::from).to_vec() } else { given };
-    let jobs = available_parallelism()?.get();
+    let args = Args::parse();
+    let fonts = if args.fonts.is_empty() { FONTS.map(String::from).to_vec() } else { args.fonts.clone() };
     println!(
-        "| font | mae (unhinted) | bad16 (unhinted) | mae 8–15 ppem | worst glyph | bytes a glyph | time |"
+        "| font | quality | mae (unhinted) | bad16 (unhinted) | mae 8–15 ppem | worst glyph | bytes a glyph | time |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     for path in fonts {
-        let original = std::fs::read(&path)?;
-        let font = read_fonts::FontRef::new(&original)?;
-        let selection =
-            nfr::convert::select::Selection { unicodes: "U+21-7E".parse()?, ..Default::default() };
-        let options = Options { gids: selection.resolve(&font, [])?, jobs, ..Options::default() };
-        let start = Instant::now();
-        let conversion = convert(&original, &options, &Silent)?;
-        let seconds = start.elapsed().as_secs_f64();
-        let pair = FontPair::open(&original, 0, &conversion.font)?;
-        let report = pair.report([&path, "converted"], &options.gids, &"8-64".parse()?, jobs)?;
-        let (neural, unhinted) = (&report.totals.neural.figures, &report.totals.unhinted.figures);
-        let worst = report.by_glyph.first().map_or(0.0, |g| g.compared.neural.figures.mae);
-        let small = report.bands.first().map_or(0.0, |b| b.compared.neural.figures.mae);
-        println!(
-            "| {path} | {:.4} ({:.4}) | {:.2} % ({:.1} %) | {small:.4} | {worst:.4} | {:.0} | {seconds:.0} s |",
-            neural.mae,
-            unhinted.mae,
-            100.0 * neural.bad16,
-            100.0 * unhinted.bad16,
-            report.subject.bytes_per_glyph,
-        );
+        for quality in &args.quality {
+            println!("{}", line(&path, *quality, &args)?);
+        }
     }
     Ok(())
+}
+
+fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>> {
+    let jobs = available_parallelism()?.get();
+    let original = std::fs::read(path)?;
+    let font = read_fonts::FontRef::new(&original)?;
+    let selection =
+        nfr::convert::select::Selection { unicodes: args.unicodes.parse()?, ..Default::default() };
+    let (ppem, ppem_step) = args.train_ppem.evenly_spaced().ok_or("train on evenly spaced sizes")?;
+    let options = Options {
+        gids: selection.resolve(&font, [])?,
+        jobs,
+        target: args.target,
+        ppem: ppem.clone(),
+        ppem_step,
+        ..Options::default().with_quality(Quality::new(quality).ok_or("a quality is 0 to 100")?)
+    };
+    let start = Instant::now();
+    let conversion = convert(&original, &options, &Silent)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let others: Vec<String> =
+        ppem.clone().filter(|s| (s - ppem.start()) % ppem_step != 0).map(|s| s.to_string()).collect();
+    let measured = match &args.ppem {
+        Some(list) => list.clone(),
+        None if others.is_empty() => args.train_ppem.clone(),
+        None => others.join(",").parse()?,
+    };
+    let pair = FontPair::open(&original, 0, &conversion.font)?;
+    let report = pair.report([path, "converted"], &options.gids, &measured, jobs)?;
+    let (neural, unhinted) = (&report.totals.neural.figures, &report.totals.unhinted.figures);
+    let worst = report.by_glyph.first().map_or(0.0, |g| g.compared.neural.figures.mae);
+    let small = report.bands.first().map_or(0.0, |b| b.compared.neural.figures.mae);
+    Ok(format!(
+        "| {path} | {quality} | {:.4} ({:.4}) | {:.2} % ({:.1} %) | {small:.4} | {worst:.4} | {:.0} | {seconds:.0} s |",
+        neural.mae,
+        unhinted.mae,
+        100.0 * neural.bad16,
+        100.0 * unhinted.bad16,
+        report.subject.bytes_per_glyph,
+    ))
 }

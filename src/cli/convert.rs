@@ -19,7 +19,7 @@ use crate::convert::ppem::PpemList;
 use crate::convert::select::{glyph_count, glyph_names};
 use crate::convert::teacher::Teacher;
 use crate::convert::train::Backend;
-use crate::convert::{Conversion, GlyphReport, Options, resume};
+use crate::convert::{Conversion, GlyphReport, Options, Quality, resume};
 use crate::model::Target;
 
 /// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
@@ -45,6 +45,9 @@ pub struct Args {
     /// What to hint for: smooth, mono or lcd
     #[arg(long, value_name = "TARGET", default_value_t)]
     target: Target,
+    /// How much error is worth how many bytes: 0 for the smallest file, 100 for the least error
+    #[arg(long, value_name = "0-100", default_value = "50", value_parser = quality)]
+    quality: Quality,
     /// The seed of whatever is drawn at random; the same seed gives the same font
     #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
     seed: u64,
@@ -129,6 +132,10 @@ fn backend(name: &str) -> Result<Backend, String> {
         "ndarray" => Err("this program is built without it; build it with --features ndarray".into()),
         _ => Err("use flex or ndarray".into()),
     }
+}
+
+fn quality(text: &str) -> Result<Quality, String> {
+    text.parse().ok().and_then(Quality::new).ok_or_else(|| "write a number from 0 to 100".into())
 }
 
 /// Runs `nfr-convert`.
@@ -228,7 +235,7 @@ fn prepare(
         jobs: args.jobs,
         backend: args.backend,
         drop_outlines: args.drop_outlines,
-        ..Options::default()
+        ..Options::default().with_quality(args.quality)
     };
     Ok((options, reporter))
 }

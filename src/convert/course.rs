@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use super::partial::Partial;
 use super::pipeline::{Options, Progress};
+use super::polish::polish;
 use super::start::Draft;
 use super::teach::{Lesson, lesson};
 use super::teacher::{Teacher, TeacherAt};
@@ -116,8 +117,13 @@ impl Course<'_, '_, '_> {
             train(&inked, &mut drafts, self.scale, options.schedule, options.backend)?;
         }
         let mut drafts = drafts.into_iter();
-        let next = |lesson| if blank(lesson) { None } else { drafts.next() };
-        Ok(lessons.iter().map(next).map(|draft| draft.unwrap_or_default().quantise()).collect())
+        let finished = |lesson: &Lesson| {
+            let draft = if blank(lesson) { None } else { drafts.next() };
+            let mut weights = draft.unwrap_or_default().quantise();
+            polish(&mut weights, lesson, self.scale, options.polish)?;
+            Ok(weights)
+        };
+        lessons.iter().map(finished).collect()
     }
 
     /// Draws what will be stored and compares it with the lesson.

@@ -1,4 +1,4 @@
-//! From a hinted font to a neural one: select, teach, train, quantise, pack. Each stage is a module, and each
+//! From a hinted font to a neural one: select, teach, train, quantise, polish, pack. Each stage is a module, and each
 //! stage's output is a plain type that the next one takes.
 
 pub mod assemble;
@@ -9,7 +9,9 @@ mod distance;
 pub mod open;
 pub mod partial;
 pub mod pipeline;
+pub mod polish;
 pub mod ppem;
+mod quality;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod samples;
@@ -22,3 +24,4 @@ pub mod train;
 mod warp;
 
 pub use pipeline::{Conversion, GlyphReport, Options, Progress, convert, resume};
+pub use quality::Quality;

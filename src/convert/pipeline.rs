@@ -9,6 +9,8 @@ use super::assemble::{HintBytes, assemble, hint_bytes, outline_hash};
 use super::compose::Plan;
 use super::course::Course;
 use super::partial::Partial;
+use super::polish::Polish;
+use super::quality::Quality;
 use super::start::Capacity;
 use super::teacher::{Teacher, TeacherAt};
 use super::train::{Backend, Schedule};
@@ -40,6 +42,8 @@ pub struct Options {
     pub capacity: Capacity,
     /// How long and how fast to train.
     pub schedule: Schedule,
+    /// How the trained weights are polished.
+    pub polish: Polish,
     /// Whether glyphs are put together from others' models where their hints do the same.
     pub compose: bool,
     /// Whether the outlines of the glyphs that have models are left out of the font.
@@ -60,8 +64,21 @@ impl Default for Options {
             backend: Backend::default(),
             capacity: Capacity::default(),
             schedule: Schedule::default(),
+            polish: Polish::default(),
             compose: true,
             drop_outlines: false,
+        }
+    }
+}
+
+impl Options {
+    /// The same with another balance of error and bytes.
+    pub fn with_quality(self, quality: Quality) -> Self {
+        Self {
+            capacity: quality.capacity(),
+            schedule: Schedule { smoothness: quality.smoothness(), ..self.schedule },
+            polish: quality.polish(),
+            ..self
         }
     }
 }

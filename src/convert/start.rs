@@ -29,12 +29,12 @@ pub struct Capacity {
 
 impl Default for Capacity {
     fn default() -> Self {
-        Self { cell: 0.034, knots: 12, knot_gain: 2e-5, rank: 8, least_rank: 2, pattern_gain: 0.01 }
+        Self { cell: 0.031, knots: 12, knot_gain: 5e-4, rank: 8, least_rank: 2, pattern_gain: 0.01 }
     }
 }
 
 /// The fewest cells along an axis.
-const MIN_CELLS: f32 = 10.0;
+const MIN_CELLS: f32 = 6.0;
 /// The most cells along an axis.
 const MAX_CELLS: f32 = 40.0;
 

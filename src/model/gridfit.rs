@@ -4,6 +4,9 @@
 //! Every operation here is an IEEE 754 addition, subtraction, multiplication, division, comparison or
 //! conversion in a fixed order, so that the pixels are the same on every machine.
 
+#[cfg(feature = "convert")]
+mod adjust;
+
 use crate::error::Error;
 use crate::render::Placement;
 

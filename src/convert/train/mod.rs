@@ -3,6 +3,7 @@
 mod batch;
 mod bounds;
 mod field;
+mod smooth;
 
 use burn::optim::{Adam, AdamConfig, AdamState, Optimizer};
 use burn::tensor::{Device, Tensor};
@@ -14,6 +15,7 @@ use crate::model::gridfit::Scale;
 use batch::{Extent, GROUPS, Group};
 use bounds::{box_bounds, within};
 use field::{ColumnBasis, Parameters, column_basis, loss};
+use smooth::{roughness, squares};
 
 /// How long and how fast to train.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +32,9 @@ pub struct Schedule {
     pub pattern_rate: f64,
     /// Size embedding, in pixels.
     pub embedding_rate: f64,
+    /// What it costs a coefficient of the field to be off the plane through its neighbours: errors of a pixel
+    /// for an em.
+    pub smoothness: f64,
 }
 
 impl Default for Schedule {
@@ -41,6 +46,7 @@ impl Default for Schedule {
             warp_rate: 0.008,
             pattern_rate: 0.015,
             embedding_rate: 0.015,
+            smoothness: 0.2,
         }
     }
 }
@@ -112,6 +118,7 @@ pub fn train(
     weights.hinted = weights.hinted.map(Tensor::require_grad);
     weights.patterns = weights.patterns.require_grad();
     weights.embedding = weights.embedding.require_grad();
+    let mask = squares(drafts, extent, &device);
     let bounds = box_bounds(lessons, drafts, extent, &device);
     // Columns that are not warped stay where they are.
     let still: Option<Vec<ColumnBasis>> = (extent.knots[0] == 0)
@@ -125,7 +132,9 @@ pub fn train(
         let k = step * stride % groups.len();
         let used = if done as f32 >= schedule.rounded_from { weights.rounded() } else { weights.clone() };
         let used = used.ordered(extent);
-        let loss = loss(&groups[k], still.as_ref().map(|s| &s[k]), &used, extent);
+        let pixels = groups[k].samples.target.dims()[0] as f64;
+        let loss = loss(&groups[k], still.as_ref().map(|s| &s[k]), &used, extent)
+            + roughness(&weights.field, &mask).mul_scalar(schedule.smoothness / pixels);
         let mut gradients = loss.backward();
         let [x, y] = weights.hinted.clone();
         let (gx, gy) = (x.grad_remove(&mut gradients), y.grad_remove(&mut gradients));
