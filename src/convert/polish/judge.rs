@@ -10,12 +10,15 @@ const SMALL: f32 = 32.0;
 /// What a sample's surroundings add to the pixels that a change reaches.
 const MARGIN: f32 = SLOPE_REACH + 0.05;
 
+/// What changes at all sizes is judged at every second one, in turn: neighbouring sizes tell much the same.
+const SHARES: usize = 2;
+
 /// What has to be drawn again for a change.
 pub(super) enum Regions {
     /// A whole bitmap, whose box may change.
     Whole(usize),
-    /// Parts of bitmaps: size and place.
-    Parts(Vec<(usize, Placement)>),
+    /// Parts of bitmaps (size and place), each of which stands for so many.
+    Parts(Vec<(usize, Placement)>, f64),
 }
 
 pub(super) struct Judge<'a> {
@@ -44,18 +47,20 @@ impl<'a> Judge<'a> {
     ) -> Result<Regions, Error> {
         let mut part = model.placement(self.ppem(size))?;
         cut(&mut part, axis, low, high);
-        Ok(Regions::Parts(vec![(size, part)]))
+        Ok(Regions::Parts(vec![(size, part)], 1.0))
     }
 
-    /// What the plain ranges `reach` (em, for each axis) can change, at those sizes that count.
+    /// What the plain ranges `reach` (em, for each axis) can change, at those sizes that count. Each round looks
+    /// at its share of the sizes.
     pub(super) fn around(
         &self,
         model: &GridFit,
         reach: [[f32; 2]; 2],
+        round: usize,
         counts: impl Fn(usize) -> bool,
     ) -> Result<Regions, Error> {
         let mut parts = Vec::with_capacity(self.lesson.sizes.len());
-        for size in (0..self.lesson.sizes.len()).filter(|size| counts(*size)) {
+        for size in (round % SHARES..self.lesson.sizes.len()).step_by(SHARES).filter(|size| counts(*size)) {
             let ppem = self.ppem(size);
             let mut part = model.placement(ppem)?;
             for (axis, [low, high]) in reach.into_iter().enumerate() {
@@ -66,7 +71,7 @@ impl<'a> Judge<'a> {
                 parts.push((size, part));
             }
         }
-        Ok(Regions::Parts(parts))
+        Ok(Regions::Parts(parts, SHARES as f64))
     }
 
     /// The summed error over the regions, in pixels; anything above `limit` once it is clear that it is above.
@@ -77,10 +82,10 @@ impl<'a> Judge<'a> {
                 let within = self.part(model, *size, place);
                 Ok((within + outside(&self.lesson.sizes[*size].bitmap, place)) * self.weight(*size))
             }
-            Regions::Parts(parts) => {
+            Regions::Parts(parts, count) => {
                 let mut sum = 0.0;
                 for &(size, part) in parts {
-                    sum += self.part(model, size, part) * self.weight(size);
+                    sum += self.part(model, size, part) * self.weight(size) * count;
                     if sum > limit {
                         break;
                     }

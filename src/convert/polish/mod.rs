@@ -25,7 +25,7 @@ pub struct Polish {
 
 impl Default for Polish {
     fn default() -> Self {
-        Self { rounds: 2, bit_worth: 0.006 }
+        Self { rounds: 4, bit_worth: 0.006 }
     }
 }
 
@@ -50,8 +50,9 @@ pub fn polish(weights: &mut Weights, lesson: &Lesson, scale: Scale, options: Pol
     }
     let model = GridFit::new(weights, scale)?;
     let mut bench =
-        Bench { weights: std::mem::take(weights), model, judge: Judge::new(lesson), scale, options };
-    let result = (0..options.rounds).try_for_each(|_| {
+        Bench { weights: std::mem::take(weights), model, judge: Judge::new(lesson), scale, options, round: 0 };
+    let result = (0..options.rounds).try_for_each(|round| {
+        bench.round = round;
         bench.warp(0)?;
         bench.warp(1)?;
         bench.field()?;
@@ -69,6 +70,7 @@ struct Bench<'a> {
     judge: Judge<'a>,
     scale: Scale,
     options: Polish,
+    round: usize,
 }
 
 impl Bench<'_> {
@@ -160,7 +162,7 @@ impl Bench<'_> {
             let reach = [0, 1].map(|axis| {
                 self.model.coefficient_reach(axis, if axis == 0 { at % stride } else { at / stride })
             });
-            let regions = self.judge.around(&self.model, reach, |_| true)?;
+            let regions = self.judge.around(&self.model, reach, self.round, |_| true)?;
             let put = |weights: &mut Weights, model: &mut GridFit, value: i32| {
                 weights.field[at] = value as i8;
                 model.set_field(at, value as i8);
@@ -182,7 +184,7 @@ impl Bench<'_> {
             let reach = [node % DEFORM_NODES, node / DEFORM_NODES];
             let reach = [0, 1].map(|axis| self.model.node_reach(axis, reach[axis]));
             let embedding = &self.weights.embedding;
-            let regions = self.judge.around(&self.model, reach, |s| embedding[s * rank + r] != 0)?;
+            let regions = self.judge.around(&self.model, reach, self.round, |s| embedding[s * rank + r] != 0)?;
             let put = |weights: &mut Weights, model: &mut GridFit, value: i32| {
                 weights.patterns[at] = value as i8;
                 model.set_pattern(at, value as i8);

@@ -71,7 +71,9 @@ fn nothing_changes_outside_the_regions_of_a_number() {
         let stride = usize::from(weights.cells[0]) + 2;
         let mut seen = 0;
         let mut hold = |changed: &GridFit, regions: Regions, what: &str| {
-            let Regions::Parts(parts) = regions else { return };
+            let Regions::Parts(parts, share) = regions else { return };
+            let seen_sizes: Vec<usize> = parts.iter().map(|p| p.0).collect();
+            let _ = (share, seen_sizes);
             for (size, hinted) in lessons[0].sizes.iter().enumerate() {
                 let ppem = f32::from(hinted.ppem);
                 let (a, b) = (draw(&model, ppem), draw(changed, ppem));
