@@ -260,6 +260,27 @@ fn a_model_that_readers_would_refuse_is_not_written() {
     assert!(refused(Weights { rank: MAX_RANK + 1, ..fits }));
 }
 
+#[test]
+fn the_example_of_the_specification_is_packed_as_it_says() {
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10, step: 1 };
+    let weights = Weights {
+        bounds: [0, -20, 300, 700],
+        cells: [10, 10],
+        field: (0..144).map(|i| (50 - i) as i8).collect(),
+        warp_y: AxisWarp { knots: vec![-20, 700], hinted: vec![-1, 180, 0, 202, -32, 224] },
+        rank: 1,
+        patterns: (0..64).map(|i| i % 5 - 2).collect(),
+        embedding: vec![3, 3, -4],
+        ..Weights::default()
+    };
+    let bytes = encode(&weights, scale);
+    let hex: Vec<String> =
+        bytes.chunks(32).map(|line| line.iter().map(|byte| format!("{byte:02x}")).collect()).collect();
+    let listing = hex.iter().map(|line| format!("    {line}\n")).collect::<String>();
+    assert!(include_str!("../spec/nfrt.md").contains(&listing), "the message is\n{listing}");
+    assert_eq!(decode(&bytes, scale), Ok(weights));
+}
+
 /// A converted font with a few models.
 static CONVERTED: LazyLock<Vec<u8>> =
     LazyLock::new(|| converted(&font("LiberationSans-Regular"), "aij.", 0).font);

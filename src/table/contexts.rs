@@ -197,3 +197,32 @@ impl<'p, C: Coder> Model<'p, C> {
 pub(super) fn class<const N: usize>(value: i32, limits: [i32; N]) -> usize {
     limits.iter().filter(|limit| value >= **limit).count()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_specification_lists_the_kinds_with_their_contexts_and_questions() {
+        let page = include_str!("../../spec/nfrt.md");
+        let names = [
+            "count",
+            "units",
+            "predictor",
+            "jump",
+            "fraction",
+            "clipped",
+            "least",
+            "coefficient",
+            "pattern",
+            "embedding",
+            "place",
+            "ink",
+        ];
+        for (name, (contexts, questions)) in names.iter().zip(SHAPES) {
+            let sets: Vec<String> = contexts.iter().filter(|n| **n > 0).map(usize::to_string).collect();
+            let row = format!("| {name} | {} | {questions} |", sets.join(", "));
+            assert!(page.contains(&row), "spec/nfrt.md does not say {row:?}");
+        }
+    }
+}

@@ -42,12 +42,14 @@ pub(super) const fn odds(digit: u8) -> u16 {
     (squash((digit as i32 - 32) * 64 + 32) * 16 + 8) as u16
 }
 
+/// The logistic function at every half unit from −8 to 8, in 1/4096.
+const CURVE: [i32; 33] = [
+    1, 2, 3, 6, 10, 16, 27, 45, 73, 120, 194, 310, 488, 747, 1101, 1546, 2047, 2549, 2994, 3348, 3607, 3785,
+    3901, 3975, 4022, 4050, 4068, 4079, 4085, 4089, 4092, 4093, 4094,
+];
+
 /// The logistic function at 256 steps to the unit, in 1/4096: from what contexts say to odds.
 pub(super) const fn squash(said: i32) -> u32 {
-    const CURVE: [i32; 33] = [
-        1, 2, 3, 6, 10, 16, 27, 45, 73, 120, 194, 310, 488, 747, 1101, 1546, 2047, 2549, 2994, 3348, 3607,
-        3785, 3901, 3975, 4022, 4050, 4068, 4079, 4085, 4089, 4092, 4093, 4094,
-    ];
     if said > 2047 {
         return ONE - 1;
     }
@@ -75,6 +77,13 @@ pub(super) static STRETCH: [i16; ONE as usize] = {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_specification_lists_the_curve() {
+        let page = include_str!("../../spec/nfrt.md").split_whitespace().collect::<Vec<_>>().join(" ");
+        let curve = CURVE.map(|odds| odds.to_string()).join(" ");
+        assert!(page.contains(&format!("C = {curve} and")), "spec/nfrt.md does not list the curve");
+    }
 
     #[test]
     fn what_is_squashed_is_stretched_back() {

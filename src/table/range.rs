@@ -1,9 +1,9 @@
 //! A binary arithmetic coder: one decision after the other, each with its probability.
 //!
 //! It is the carry-less coder of lpaq: an interval of 32-bit numbers is split in proportion, and a leading byte that
-//! both ends share is done with. The crates for this (constriction 0.5) emit whole words of 16 or 32 bits at the
-//! end of each message and bring four dependencies; a glyph is some hundreds of bytes and the renderer's list of
-//! dependencies is to stay short.
+//! both ends share is done with. constriction 0.5, the crate for this, ends each message with whole words of 16 or
+//! 32 bits and brings five dependencies; a glyph is some hundreds of bytes, and the renderer's list of dependencies is
+//! to stay short.
 
 /// What a probability is a share of.
 pub(super) const ONE: u32 = 1 << 12;
