@@ -5,7 +5,7 @@
 //! ```
 //! # fn draw(file: &[u8]) -> Result<nfr::Bitmap, nfr::Error> {
 //! let font = nfr::Font::parse(file)?;
-//! nfr::Rasterizer::new(&font)?.render(font.glyph_for_char('g').unwrap_or(0), 16.0)
+//! nfr::Rasterizer::new(&font).render(font.glyph_for_char('g').unwrap_or(0), 16.0)
 //! # }
 //! # assert!(draw(b"no font").is_err());
 //! ```

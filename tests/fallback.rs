@@ -16,7 +16,7 @@ fn without_the_feature_a_glyph_that_has_no_model_is_missing() {
     let original = font("LiberationSans-Regular");
     let data = converted(&original, ".", 0).font;
     let font = Font::parse(&data).unwrap();
-    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
     let g = gid(&original, 'g');
     assert!(g < font.glyph_count() && !font.has_model(g));
     assert_eq!(rasterizer.placement(g, 16.0), Err(Error::MissingGlyph(g)));
@@ -31,7 +31,7 @@ fn with_the_feature_a_glyph_that_has_no_model_is_drawn_from_its_outline() {
     let original = font("LiberationSans-Regular");
     let data = converted(&original, ".", 0).font;
     let font = Font::parse(&data).unwrap();
-    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
     let teacher = Teacher::new(&read_fonts::FontRef::new(&original).unwrap(), font.target()).unwrap();
     for ppem in [0.7, 8.0, 16.5, 64.0, 300.0] {
         for character in ['g', 'é', ' '] {
@@ -54,7 +54,7 @@ fn with_the_feature_the_errors_are_those_of_a_model() {
     let original = font("LiberationSans-Regular");
     let data = converted(&original, ".", 0).font;
     let font = Font::parse(&data).unwrap();
-    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
     let g = gid(&original, 'g');
     for ppem in [0.0, -1.0, f32::NAN, f32::INFINITY, 2049.0] {
         assert!(matches!(rasterizer.render(g, ppem), Err(Error::InvalidParameter(_))), "{ppem}");

@@ -44,7 +44,7 @@ fn measure(name: &str, target: Target) -> Measured {
     let options = options(&data, TEXT, target, STEPS);
     let conversion = convert(&data, &options, &Silent).unwrap();
     let neural = Font::parse(&conversion.font).unwrap();
-    let mut rasterizer = Rasterizer::new(&neural).unwrap();
+    let mut rasterizer = Rasterizer::new(&neural);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
     let (mut ours, mut plain) = (Sums::default(), Sums::default());
     for ppem in options.ppem.clone() {

@@ -35,7 +35,7 @@ const PPEM: [f32; 14] = [0.5, 3.0, 7.5, 8.0, 10.9, 11.0, 15.5, 16.0, 31.9, 32.0,
 #[test]
 fn all_ways_of_drawing_agree() {
     let font = neural();
-    let (mut rasterizer, mut scratch) = (Rasterizer::new(&font).unwrap(), Scratch::default());
+    let (mut rasterizer, mut scratch) = (Rasterizer::new(&font), Scratch::default());
     for gid in letters() {
         let glyph = font.glyph(gid).unwrap();
         for ppem in PPEM {
@@ -54,7 +54,7 @@ fn all_ways_of_drawing_agree() {
 #[test]
 fn a_buffer_that_is_too_small_is_an_error_and_left_alone() {
     let font = neural();
-    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
     let g = gid(&ORIGINAL, 'g');
     let area = rasterizer.placement(g, 20.0).unwrap().area();
     let mut pixels = vec![7; area - 1];
@@ -69,7 +69,7 @@ fn a_buffer_that_is_too_small_is_an_error_and_left_alone() {
 #[test]
 fn bytes_beyond_the_bitmap_are_left_alone() {
     let font = neural();
-    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
     for gid in letters() {
         let area = rasterizer.placement(gid, 20.0).unwrap().area();
         for before in [7, 201] {
@@ -88,7 +88,7 @@ fn bytes_beyond_the_bitmap_are_left_alone() {
 #[test]
 fn sizes_that_make_no_sense_are_errors() {
     let font = neural();
-    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
     for ppem in [0.0, -0.0, -1.0, 2049.0, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
         for gid in letters() {
             let error = rasterizer.render(gid, ppem).unwrap_err();
@@ -107,7 +107,7 @@ fn sizes_that_make_no_sense_are_errors() {
 #[test]
 fn a_glyph_that_the_font_does_not_have_is_missing() {
     let font = neural();
-    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
     for gid in [font.glyph_count(), u16::MAX] {
         assert!(!font.has_model(gid));
         assert_eq!(rasterizer.render(gid, 16.0), Err(Error::MissingGlyph(gid)));
@@ -221,7 +221,7 @@ fn beyond_the_trained_sizes_the_plain_shape_is_drawn() {
 fn a_cache_of_any_size_draws_the_same() {
     let font = neural();
     let draw = |bytes: usize| {
-        let mut rasterizer = Rasterizer::with_cache(&font, bytes).unwrap();
+        let mut rasterizer = Rasterizer::with_cache(&font, bytes);
         let mut order: Vec<u16> = letters().collect();
         order.extend(order.clone().iter().rev());
         let sizes = order.into_iter().flat_map(|gid| [9.0, 33.0].map(|ppem| (gid, ppem)));

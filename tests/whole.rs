@@ -57,7 +57,7 @@ fn a_composed_glyph_is_drawn_as_its_parts_where_hints_put_them() {
     let data = font("LiberationSans-Regular");
     let conversion = convert(&data, &options(&data, ACCENTED, 0), &Silent).unwrap();
     let font = Font::parse(&conversion.font).unwrap();
-    let mut rasterizer = Rasterizer::new(&font).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), Target::Smooth).unwrap();
     let (mut base, mut accented) = (Sums::default(), Sums::default());
     for ppem in 8..=40 {
@@ -83,7 +83,7 @@ fn a_composed_glyph_of_the_font_equals_that_of_the_rasterizer_at_any_size() {
     assert!(font.modelled_glyphs().is_sorted());
     assert_eq!(font.modelled_glyphs().len(), conversion.glyphs.len());
     // A cache of one byte holds one glyph.
-    let mut rasterizers = [8 << 20, 1].map(|bytes| Rasterizer::with_cache(&font, bytes).unwrap());
+    let mut rasterizers = [8 << 20, 1].map(|bytes| Rasterizer::with_cache(&font, bytes));
     let mut scratch = Scratch::default();
     for gid in font.modelled_glyphs() {
         let glyph = font.glyph(gid).unwrap();

@@ -17,7 +17,7 @@ use crate::model::gridfit::{Scale, Weights};
 use crate::table::{FNV_BASIS, codec, fnv1a};
 
 /// Begins the file; a key of 8 bytes follows.
-const MAGIC: &[u8; 14] = b"nfr partial 1\n";
+const MAGIC: &[u8; 14] = b"nfr partial 2\n";
 /// Bytes of a record's checksum.
 const SUM_BYTES: usize = 8;
 
@@ -29,7 +29,7 @@ pub struct Partial {
     /// Opened by the first record if the file did not exist.
     file: Mutex<Option<File>>,
     /// What the file held: each glyph's box and encoded weights.
-    found: HashMap<u16, ([i16; 4], Vec<u8>)>,
+    found: HashMap<u16, Vec<u8>>,
 }
 
 /// Ties a file to what the result depends on: this version, the input and the options, but not the threads.
@@ -121,12 +121,7 @@ impl Partial {
 
     /// The weights of some glyphs, if all of them are there.
     pub(super) fn weights(&self, gids: &[u16], scale: Scale) -> Option<Vec<Weights>> {
-        gids.iter()
-            .map(|gid| {
-                let (bounds, bytes) = self.found.get(gid)?;
-                codec::decode(bytes, *bounds, scale).ok()
-            })
-            .collect()
+        gids.iter().map(|gid| codec::decode(self.found.get(gid)?, scale).ok()).collect()
     }
 
     /// Appends the weights of some glyphs and waits until they are on the disk.
@@ -143,7 +138,6 @@ impl Partial {
         for (gid, weights) in glyphs {
             let bytes = codec::encode(weights, scale);
             payload.extend(gid.to_be_bytes());
-            payload.extend(weights.bounds.into_iter().flat_map(i16::to_be_bytes));
             payload.extend((bytes.len() as u32).to_be_bytes());
             payload.extend(bytes);
         }
@@ -175,8 +169,8 @@ impl Partial {
         let mut rest = bytes.strip_prefix(self.heading().as_slice())?;
         while let Some((payload, after)) = split_record(rest) {
             let mut glyphs = payload;
-            while let Some((gid, bounds, weights, more)) = split_glyph(glyphs) {
-                self.found.insert(gid, (bounds, weights.to_vec()));
+            while let Some((gid, weights, more)) = split_glyph(glyphs) {
+                self.found.insert(gid, weights.to_vec());
                 glyphs = more;
             }
             rest = after;
@@ -208,14 +202,10 @@ fn split_record(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     (u64::from_be_bytes(*sum) == fnv1a(FNV_BASIS, payload)).then_some((payload, rest))
 }
 
-type GlyphRecord<'a> = (u16, [i16; 4], &'a [u8], &'a [u8]);
-
-/// A glyph of a payload, its box, its weights, and what follows.
-fn split_glyph(bytes: &[u8]) -> Option<GlyphRecord<'_>> {
+/// A glyph of a payload, its weights, and what follows.
+fn split_glyph(bytes: &[u8]) -> Option<(u16, &[u8], &[u8])> {
     let (gid, rest) = bytes.split_first_chunk()?;
-    let (bounds, rest) = rest.split_first_chunk::<8>()?;
     let (length, rest) = rest.split_first_chunk()?;
     let (weights, rest) = rest.split_at_checked(u32::from_be_bytes(*length) as usize)?;
-    let side = |k: usize| i16::from_be_bytes([bounds[2 * k], bounds[2 * k + 1]]);
-    Some((u16::from_be_bytes(*gid), [side(0), side(1), side(2), side(3)], weights, rest))
+    Some((u16::from_be_bytes(*gid), weights, rest))
 }

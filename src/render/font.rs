@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::model::Target;
 use crate::model::compose::Origin;
 use crate::model::gridfit::{GridFit, Scale};
-use crate::table::{self, Header, ModelDecoder, Table};
+use crate::table::{self, Header, PartsDecoder, Table};
 
 /// A font with an `Nfrt` table, borrowed from the file's bytes. Opening it reads headers only.
 #[derive(Clone)]
@@ -147,33 +147,29 @@ impl<'a> Font<'a> {
     ///
     /// `MissingGlyph` if it has none, `Malformed` or `LimitExceeded` if its bytes are damaged.
     pub fn glyph(&self, gid: u16) -> Result<Glyph, Error> {
-        self.glyph_with(&mut ModelDecoder::new(&self.table)?, gid, |_| None)
-    }
-
-    pub(super) fn decoder(&self) -> Result<ModelDecoder, Error> {
-        ModelDecoder::new(&self.table)
+        self.glyph_with(&mut PartsDecoder::default(), gid, |_| None)
     }
 
     /// Decodes a glyph. Those in `known` are not decoded again as parts of others.
     pub(super) fn glyph_with(
         &self,
-        decoder: &mut ModelDecoder,
+        parts: &mut PartsDecoder,
         gid: u16,
         known: impl Fn(u16) -> Option<Arc<GridFit>>,
     ) -> Result<Glyph, Error> {
-        let model = |decoder: &mut ModelDecoder, gid| match known(gid) {
+        let model = |gid| match known(gid) {
             Some(model) => Ok(model),
             None => {
-                let weights = decoder.decode(&self.table, gid, self.scale)?;
+                let weights = self.table.weights(gid, self.scale)?;
                 GridFit::new(&weights, self.scale).map(Arc::new)
             }
         };
         if !self.table.is_composed(gid) {
-            return Ok(Glyph::of_model(model(decoder, gid)?, self.scale));
+            return Ok(Glyph::of_model(model(gid)?, self.scale));
         }
-        let parts = decoder.parts(&self.table, gid, self.scale)?;
-        let parts = parts.iter().map(|part| Ok((model(decoder, part.gid)?, Origin::new(part, self.scale)?)));
-        Ok(Glyph::of_parts(parts.collect::<Result<_, Error>>()?))
+        let placed = parts.parts(&self.table, gid, self.scale)?;
+        let placed = placed.iter().map(|part| Ok((model(part.gid)?, Origin::new(part, self.scale)?)));
+        Ok(Glyph::of_parts(placed.collect::<Result<_, Error>>()?))
     }
 
     #[cfg(feature = "fallback")]

@@ -7,7 +7,7 @@ use super::glyph::buffer_for;
 use super::{Bitmap, Font, Glyph, Placement};
 use crate::error::Error;
 use crate::model::gridfit::Scratch;
-use crate::table::ModelDecoder;
+use crate::table::PartsDecoder;
 
 /// Decoded models take up to this many bytes unless the caller says otherwise: about 600 glyphs.
 const DEFAULT_CACHE: usize = 8 << 20;
@@ -16,29 +16,21 @@ const DEFAULT_CACHE: usize = 8 << 20;
 /// outline; without it, such a glyph is [`Error::MissingGlyph`].
 pub struct Rasterizer<'a> {
     font: Font<'a>,
-    decoder: ModelDecoder,
+    parts: PartsDecoder,
     cache: Cache,
     scratch: Scratch,
 }
 
 impl<'a> Rasterizer<'a> {
     /// A rasterizer with a cache of 8 MiB.
-    ///
-    /// # Errors
-    ///
-    /// `Malformed` if the table's dictionary is damaged.
-    pub fn new(font: &Font<'a>) -> Result<Self, Error> {
+    pub fn new(font: &Font<'a>) -> Self {
         Self::with_cache(font, DEFAULT_CACHE)
     }
 
     /// A rasterizer that keeps decoded models of at most `bytes` bytes, and always at least the last one.
-    ///
-    /// # Errors
-    ///
-    /// As `new`.
-    pub fn with_cache(font: &Font<'a>, bytes: usize) -> Result<Self, Error> {
+    pub fn with_cache(font: &Font<'a>, bytes: usize) -> Self {
         let cache = Cache { limit: bytes, ..Cache::default() };
-        Ok(Self { decoder: font.decoder()?, font: font.clone(), cache, scratch: Scratch::default() })
+        Self { parts: PartsDecoder::default(), font: font.clone(), cache, scratch: Scratch::default() }
     }
 
     /// The font that is drawn.
@@ -58,7 +50,7 @@ impl<'a> Rasterizer<'a> {
         if !self.font.has_model(gid) {
             return self.outline(gid, ppem).map(|bitmap| bitmap.placement);
         }
-        self.cache.get(&self.font, &mut self.decoder, gid)?.placement(ppem)
+        self.cache.get(&self.font, &mut self.parts, gid)?.placement(ppem)
     }
 
     /// Draws a glyph's coverage, 0–255, into `pixels`: top row first, `placement.width` bytes a row. Bytes
@@ -74,7 +66,7 @@ impl<'a> Rasterizer<'a> {
             buffer_for(bitmap.placement, pixels)?.copy_from_slice(&bitmap.pixels);
             return Ok(bitmap.placement);
         }
-        let glyph = self.cache.get(&self.font, &mut self.decoder, gid)?;
+        let glyph = self.cache.get(&self.font, &mut self.parts, gid)?;
         glyph.render_into(ppem, &mut self.scratch, pixels)
     }
 
@@ -117,11 +109,11 @@ struct Cache {
 }
 
 impl Cache {
-    fn get(&mut self, font: &Font<'_>, decoder: &mut ModelDecoder, gid: u16) -> Result<&Glyph, Error> {
+    fn get(&mut self, font: &Font<'_>, parts: &mut PartsDecoder, gid: u16) -> Result<&Glyph, Error> {
         self.clock += 1;
         if !self.glyphs.contains_key(&gid) {
             let known = |gid| self.glyphs.get(&gid).and_then(|(_, glyph)| glyph.model());
-            let glyph = font.glyph_with(decoder, gid, known)?;
+            let glyph = font.glyph_with(parts, gid, known)?;
             let bytes = glyph.memory();
             while self.bytes + bytes > self.limit && !self.glyphs.is_empty() {
                 self.evict();

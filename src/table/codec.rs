@@ -1,7 +1,18 @@
-//! One glyph's weights as bytes, before compression: small residuals against what can be predicted.
+//! One glyph's weights as bytes: what can be predicted is, and the rest is coded with odds that fit its contexts.
+//!
+//! Writing and reading are the same functions: a coder that writes is given the weights, one that reads fills them
+//! in. `spec/nfrt.md` describes the order.
 
+use super::contexts::{
+    CLIPPED, COEFFICIENT, COUNT, EMBEDDING, INK, LEAST, Model, PATTERN, PLACE, UNITS, class,
+};
+use super::priors::PRIOR;
+#[cfg(feature = "convert")]
+use super::range::Encoder;
+use super::range::{Coder, Decoder, End};
+use super::warp;
 use crate::error::Error;
-use crate::model::gridfit::{AxisWarp, DEFORM_NODES, Scale, WARP_STEPS, Weights};
+use crate::model::gridfit::{DEFORM_NODES, FIELD_LIMIT, FIELD_STEPS, PADDING, Scale, Weights};
 
 /// The most cells of a field along an axis.
 pub const MAX_CELLS: u8 = 64;
@@ -10,66 +21,28 @@ pub const MAX_KNOTS: u8 = 32;
 /// The highest rank of a deformation.
 pub const MAX_RANK: u8 = 16;
 
-/// How a knot's hinted positions are predicted, size after size.
+/// A coefficient that is clipped outside, and what stands for coefficients beyond the grid.
+const CLIP: i32 = -((FIELD_LIMIT * FIELD_STEPS) as i32);
+/// The least coefficient that rounding leaves.
+const LEAST_COEFFICIENT: i32 = -127;
+/// A cell's usual edge and the grid's border, in 1/10000 em: they predict the number of cells.
+const USUAL_CELL: i64 = 340;
+const BORDER: i64 = (2.0 * PADDING * 10_000.0) as i64;
+// As the specification has them.
+const _: () = assert!(CLIP == -92 && BORDER == 600);
+
+/// The parts of a coded model, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Predictor {
-    /// The nearest whole pixel.
-    Snap = 0,
-    /// The nearest whole pixel, off by as much as at the size before.
-    SnapAgain = 1,
-    /// The plain position, off by as much as at the size before.
-    MoveAgain = 2,
-    /// As far above the knot below as the plain positions are.
-    Ride = 3,
+pub(super) enum Section {
+    Header,
+    Warp,
+    Field,
+    Patterns,
+    Embedding,
 }
 
-const PREDICTORS: [Predictor; 4] =
-    [Predictor::Snap, Predictor::SnapAgain, Predictor::MoveAgain, Predictor::Ride];
-
-/// Predicts the position of knot `k` at size `s` from those before it in `known` (size-major).
-fn predict(how: Predictor, knots: &[i16], known: &[i32], scale: Scale, s: usize, k: usize) -> i32 {
-    let count = knots.len();
-    // In integers: 2·knot·ppem·steps/units, rounded by adding one half.
-    let units = i64::from(scale.units_per_em);
-    let scaled = |font_units: i64, steps: i64, s: usize| {
-        let product = font_units * scale.ppem_of(s) as i64 * steps;
-        (2 * product + units).div_euclid(2 * units) as i32
-    };
-    let steps = WARP_STEPS as i64;
-    let knot = i64::from(knots[k]);
-    let snap = |s: usize| scaled(knot, 1, s).wrapping_mul(steps as i32);
-    match how {
-        Predictor::SnapAgain if s > 0 => {
-            snap(s).wrapping_add(known[(s - 1) * count + k].wrapping_sub(snap(s - 1)))
-        }
-        Predictor::MoveAgain if s > 0 => {
-            let before = known[(s - 1) * count + k].wrapping_sub(scaled(knot, steps, s - 1));
-            scaled(knot, steps, s).wrapping_add(before)
-        }
-        Predictor::Ride if k > 0 => {
-            known[s * count + k - 1].wrapping_add(scaled(knot - i64::from(knots[k - 1]), steps, s))
-        }
-        _ => snap(s),
-    }
-}
-
-/// Predicts a field coefficient from the ones to the left and below (the median edge detector of LOCO-I).
-fn predict_field(field: &[i8], stride: usize, at: usize) -> i8 {
-    let (column, row) = (at % stride, at / stride);
-    let left = if column > 0 { i32::from(field[at - 1]) } else { 0 };
-    let below = if row > 0 { i32::from(field[at - stride]) } else { left };
-    let left = if column > 0 { left } else { below };
-    let corner = if column > 0 && row > 0 { i32::from(field[at - stride - 1]) } else { left };
-    (left + below - corner).clamp(left.min(below), left.max(below)) as i8
-}
-
-#[cfg(feature = "convert")]
-fn zigzag(v: i32) -> u32 {
-    ((v << 1) ^ (v >> 31)) as u32
-}
-
-fn unzigzag(v: u32) -> i32 {
-    (v >> 1) as i32 ^ -((v & 1) as i32)
+fn damaged(what: &str) -> Error {
+    Error::Malformed(format!("a glyph's model {what}; convert the font again"))
 }
 
 /// Whether a model is larger than readers accept.
@@ -84,159 +57,285 @@ pub(super) fn exceeds_limits(weights: &Weights) -> bool {
 /// Turns weights into bytes. Their lengths fit each other and the limits of this module.
 #[cfg(feature = "convert")]
 pub fn encode(weights: &Weights, scale: Scale) -> Vec<u8> {
-    let mut out = vec![
-        weights.cells[0],
-        weights.cells[1],
-        weights.rank,
-        weights.warp_x.knots.len() as u8,
-        weights.warp_y.knots.len() as u8,
-    ];
-    if weights.field.is_empty() {
-        return out;
-    }
-    for warp in [&weights.warp_x, &weights.warp_y] {
-        let mut before = 0;
-        for knot in &warp.knots {
-            put_varint(&mut out, zigzag(i32::from(*knot) - before));
-            before = i32::from(*knot);
-        }
-        let residuals: Vec<(Predictor, Vec<u32>)> =
-            (0..warp.knots.len()).map(|k| best_prediction(warp, scale, k)).collect();
-        out.extend(residuals.iter().map(|(how, _)| *how as u8));
-        for residual in residuals.iter().flat_map(|(_, residuals)| residuals) {
-            put_varint(&mut out, *residual);
-        }
-    }
-    let stride = usize::from(weights.cells[0]) + 2;
-    for (at, value) in weights.field.iter().enumerate() {
-        let residual = value.wrapping_sub(predict_field(&weights.field, stride, at));
-        out.push(zigzag(i32::from(residual)) as u8);
-    }
-    let signed = weights.patterns.iter().chain(&weights.embedding);
-    out.extend(signed.map(|v| zigzag(i32::from(*v)) as u8));
-    out
+    let mut model = Model::new(Encoder::new(), &PRIOR);
+    // A coder that writes finds nothing wrong with weights within the limits.
+    let _ = code(&mut model, &mut weights.clone(), scale, |_, _| ());
+    model.coder.finish()
 }
 
-/// The predictor whose residuals of knot `k` have the fewest bits, and those residuals.
-#[cfg(feature = "convert")]
-fn best_prediction(warp: &AxisWarp, scale: Scale, k: usize) -> (Predictor, Vec<u32>) {
-    let count = warp.knots.len();
-    let residuals = |how: Predictor| -> Vec<u32> {
-        (0..scale.sizes())
-            .map(|s| {
-                let predicted = predict(how, &warp.knots, &warp.hinted, scale, s, k);
-                zigzag(warp.hinted[s * count + k].wrapping_sub(predicted))
-            })
-            .collect()
-    };
-    let bits =
-        |residuals: &[u32]| residuals.iter().map(|r| 33 - r.saturating_add(1).leading_zeros()).sum::<u32>();
-    PREDICTORS
-        .into_iter()
-        .map(|how| (how, residuals(how)))
-        .min_by_key(|(_, residuals)| bits(residuals))
-        .unwrap_or((Predictor::Snap, Vec::new()))
-}
-
-#[cfg(feature = "convert")]
-fn put_varint(out: &mut Vec<u8>, mut value: u32) {
-    while value >= 0x80 {
-        out.push(value as u8 | 0x80);
-        value >>= 7;
-    }
-    out.push(value as u8);
-}
-
-struct Bytes<'a>(&'a [u8]);
-
-impl<'a> Bytes<'a> {
-    fn byte(&mut self) -> Result<u8, Error> {
-        Ok(self.take(1)?[0])
-    }
-
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Error> {
-        let (head, tail) = self.0.split_at_checked(count).ok_or_else(|| damaged("ends early"))?;
-        self.0 = tail;
-        Ok(head)
-    }
-
-    fn varint(&mut self) -> Result<u32, Error> {
-        let mut value = 0u32;
-        for shift in (0..35).step_by(7) {
-            let byte = self.byte()?;
-            value |= u32::from(byte & 0x7F).checked_shl(shift).unwrap_or(0);
-            if byte < 0x80 {
-                return Ok(value);
-            }
-        }
-        Err(damaged("holds a number that is too long"))
-    }
-
-    fn signed(&mut self, count: usize) -> Result<Vec<i8>, Error> {
-        Ok(self.take(count)?.iter().map(|v| unzigzag(u32::from(*v)) as i8).collect())
-    }
-}
-
-fn damaged(what: &str) -> Error {
-    Error::Malformed(format!("a glyph's model {what}; convert the font again"))
-}
-
-/// Reads weights back. `bounds` is the outline's box in font units, which the table keeps elsewhere.
+/// Reads weights back.
 ///
 /// # Errors
 ///
 /// `Malformed` for bytes that end early or contradict themselves, `LimitExceeded` for a model that is larger
 /// than any converter makes.
-pub fn decode(bytes: &[u8], bounds: [i16; 4], scale: Scale) -> Result<Weights, Error> {
-    let mut bytes = Bytes(bytes);
-    let cells = [bytes.byte()?, bytes.byte()?];
-    let rank = bytes.byte()?;
-    let knots = [bytes.byte()?, bytes.byte()?];
-    if cells.iter().any(|c| *c > MAX_CELLS) || knots.iter().any(|k| *k > MAX_KNOTS) || rank > MAX_RANK {
-        return Err(Error::LimitExceeded(format!(
-            "a glyph's model has {}×{} cells, {}+{} knots and rank {rank}",
-            cells[0], cells[1], knots[0], knots[1]
-        )));
-    }
-    if cells == [0, 0] {
-        return Ok(Weights { bounds, ..Weights::default() });
-    }
-    let warp_x = decode_warp(&mut bytes, knots[0], scale)?;
-    let warp_y = decode_warp(&mut bytes, knots[1], scale)?;
-    let stride = usize::from(cells[0]) + 2;
-    let mut field = bytes.signed(stride * (usize::from(cells[1]) + 2))?;
-    for at in 0..field.len() {
-        field[at] = field[at].wrapping_add(predict_field(&field, stride, at));
-    }
-    let patterns = bytes.signed(usize::from(rank) * DEFORM_NODES * DEFORM_NODES)?;
-    let embedding = bytes.signed(usize::from(rank) * scale.sizes())?;
-    if !bytes.0.is_empty() {
-        return Err(damaged("has bytes left over"));
-    }
-    Ok(Weights { bounds, cells, field, warp_x, warp_y, rank, patterns, embedding })
+pub fn decode(bytes: &[u8], scale: Scale) -> Result<Weights, Error> {
+    let mut model = Model::new(Decoder::new(bytes), &PRIOR);
+    let mut weights = Weights::default();
+    code(&mut model, &mut weights, scale, |_, _| ())?;
+    finish(model.coder, damaged)?;
+    Ok(weights)
 }
 
-fn decode_warp(bytes: &mut Bytes<'_>, count: u8, scale: Scale) -> Result<AxisWarp, Error> {
-    let count = usize::from(count);
-    let mut knots = Vec::with_capacity(count);
-    let mut before = 0i32;
-    for _ in 0..count {
-        before = before.wrapping_add(unzigzag(bytes.varint()?));
-        knots.push(i16::try_from(before).map_err(|_| damaged("has a knot outside the em"))?);
+fn finish(coder: Decoder<'_>, damaged: impl Fn(&str) -> Error) -> Result<(), Error> {
+    coder.finish().map_err(|end| match end {
+        End::Early => damaged("ends early"),
+        End::Late => damaged("has bytes left over"),
+    })
+}
+
+/// Refuses to go on behind the end.
+pub(super) fn check<C: Coder>(coder: &C) -> Result<(), Error> {
+    if coder.is_spent() { Err(damaged("ends early")) } else { Ok(()) }
+}
+
+/// Codes a glyph's weights; calls `after` behind each section.
+pub(super) fn code<C: Coder>(
+    model: &mut Model<'_, C>,
+    weights: &mut Weights,
+    scale: Scale,
+    mut after: impl FnMut(Section, &mut C),
+) -> Result<(), Error> {
+    header(model, weights, scale)?;
+    after(Section::Header, &mut model.coder);
+    if weights.cells == [0, 0] {
+        return Ok(());
     }
-    let predictors = bytes
-        .take(count)?
-        .iter()
-        .map(|how| {
-            PREDICTORS.get(usize::from(*how)).copied().ok_or_else(|| damaged("names an unknown predictor"))
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut hinted = vec![0i32; count * scale.sizes()];
-    for (k, how) in predictors.into_iter().enumerate() {
-        for s in 0..scale.sizes() {
-            let predicted = predict(how, &knots, &hinted, scale, s, k);
-            hinted[s * count + k] = predicted.wrapping_add(unzigzag(bytes.varint()?));
+    for axis in [&mut weights.warp_x, &mut weights.warp_y] {
+        warp::code(model, axis, scale)?;
+    }
+    after(Section::Warp, &mut model.coder);
+    field(model, weights)?;
+    after(Section::Field, &mut model.coder);
+    patterns(model, weights)?;
+    after(Section::Patterns, &mut model.coder);
+    embedding(model, weights, scale)?;
+    after(Section::Embedding, &mut model.coder);
+    Ok(())
+}
+
+/// Counts, knots and the box.
+fn header<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: Scale) -> Result<(), Error> {
+    let inked = model.flag(INK, [0; 3], !weights.field.is_empty());
+    if inked {
+        let counts = [weights.warp_x.knots.len(), weights.warp_y.knots.len(), usize::from(weights.rank)];
+        let mut at = 0;
+        let counts = counts.map(|count| {
+            at += 1;
+            model.signed(COUNT, [at - 1, 0, 0], count as i32)
+        });
+        let limits = [MAX_KNOTS, MAX_KNOTS, MAX_RANK].map(i32::from);
+        if counts.iter().zip(limits).any(|(count, limit)| !(0..=limit).contains(count)) {
+            return Err(Error::LimitExceeded(format!(
+                "a glyph's model has {}+{} knots and rank {}",
+                counts[0], counts[1], counts[2]
+            )));
+        }
+        weights.rank = counts[2] as u8;
+        knots(model, &mut weights.warp_x.knots, counts[0] as usize)?;
+        knots(model, &mut weights.warp_y.knots, counts[1] as usize)?;
+    }
+    bounds(model, weights)?;
+    if !inked {
+        return Ok(());
+    }
+    for (axis, cells) in weights.cells.iter_mut().enumerate() {
+        let span = i64::from(weights.bounds[axis + 2]) - i64::from(weights.bounds[axis]);
+        let usual = ((span * 10_000 / i64::from(scale.units_per_em) + BORDER) / USUAL_CELL)
+            .clamp(1, i64::from(MAX_CELLS)) as i32;
+        let coded = model.signed(COUNT, [3 + axis, 0, 0], i32::from(*cells) - usual).wrapping_add(usual);
+        if !(1..=i32::from(MAX_CELLS)).contains(&coded) {
+            return Err(Error::LimitExceeded(format!("a glyph's model has {coded} cells along an axis")));
+        }
+        *cells = coded as u8;
+    }
+    check(&model.coder)
+}
+
+fn knots<C: Coder>(model: &mut Model<'_, C>, knots: &mut Vec<i16>, count: usize) -> Result<(), Error> {
+    knots.resize(count, 0);
+    let mut before = 0;
+    for (k, knot) in knots.iter_mut().enumerate() {
+        let step = i32::from(*knot) - before;
+        before = match k {
+            0 => model.signed(UNITS, [0; 3], step),
+            _ => before.saturating_add_unsigned(model.positive(UNITS, [1, 0, 0], step as u32)),
+        };
+        *knot = i16::try_from(before).map_err(|_| damaged("has a knot outside the em"))?;
+    }
+    Ok(())
+}
+
+/// The box, against the outermost knots or, in an axis without any, its lower edge.
+fn bounds<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Error> {
+    let Weights { bounds, warp_x, warp_y, .. } = weights;
+    for (axis, warp) in [warp_x, warp_y].into_iter().enumerate() {
+        let ends = warp.knots.first().zip(warp.knots.last());
+        let mut below = ends.map_or(0, |(first, _)| i32::from(*first));
+        for (edge, context) in [axis, axis + 2].into_iter().zip(if ends.is_some() { [2, 3] } else { [4, 5] })
+        {
+            let coded = model.signed(UNITS, [context, 0, 0], i32::from(bounds[edge]) - below);
+            let coded = coded.wrapping_add(below);
+            bounds[edge] = i16::try_from(coded).map_err(|_| damaged("has a box outside the em"))?;
+            below = ends.map_or(coded, |(_, last)| i32::from(*last));
         }
     }
-    Ok(AxisWarp { knots, hinted })
+    check(&model.coder)
+}
+
+/// Where a row or column lies: the first, the second, inside, the last but one, the last.
+fn edge(at: usize, count: usize) -> usize {
+    match at {
+        0 | 1 => at,
+        _ if at + 1 == count => 4,
+        _ if at + 2 == count => 3,
+        _ => 2,
+    }
+}
+
+fn field<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Error> {
+    let [width, height] = weights.cells.map(|cells| usize::from(cells) + 2);
+    weights.field.resize(width * height, 0);
+    // With a border to the left, to the right and below.
+    let stride = width + 2;
+    let mut values = vec![CLIP; stride * (height + 1)];
+    let mut errors = vec![0i32; stride * (height + 1)];
+    let level = |value: i32| class(value, [-110, -91, -60, -25, 10, 50]);
+    let pattern = |is: [bool; 4]| is.iter().rev().fold(0, |all, is| 2 * all + usize::from(*is));
+    for (row, coefficients) in weights.field.chunks_exact_mut(width).enumerate() {
+        check(&model.coder)?;
+        for (column, coefficient) in coefficients.iter_mut().enumerate() {
+            let at = (row + 1) * stride + column + 1;
+            let around = [at - 1, at - stride, at - stride - 1, at - stride + 1];
+            let near = around.map(|at| values[at]);
+            let [left, below, corner, right] = near;
+            let predicted = (left + below - corner).clamp(left.min(below), left.max(below));
+            let missed = around.map(|at| errors[at]);
+            let missed = (2 * missed[0] + 2 * missed[1] + missed[2] + missed[3]) / 6;
+            let levels = level(left) * 7 + level(below);
+            let value = i32::from(*coefficient);
+            let place = edge(row, height) * 5 + edge(column, width);
+            let value =
+                if model.flag(CLIPPED, [pattern(near.map(|v| v == CLIP)), levels, place], value == CLIP) {
+                    CLIP
+                } else if model.flag(
+                    LEAST,
+                    [
+                        pattern(near.map(|v| v <= LEAST_COEFFICIENT)),
+                        levels,
+                        class(missed, [2, 4, 8, 12, 18, 26, 36, 50]),
+                    ],
+                    value == LEAST_COEFFICIENT,
+                ) {
+                    LEAST_COEFFICIENT
+                } else {
+                    let steep = (left - corner).abs().max((below - corner).abs()).max((right - below).abs());
+                    let contexts = [
+                        class(missed, [1, 3, 6, 10, 15, 22, 30]) * 5 + class(right - below, [-30, -6, 7, 31]),
+                        levels,
+                        level(predicted) * 6 + class(steep, [4, 10, 20, 40, 70]),
+                    ];
+                    predicted.wrapping_add(model.signed(COEFFICIENT, contexts, value - predicted))
+                };
+            *coefficient = value as i8;
+            values[at] = i32::from(*coefficient);
+            errors[at] = if value == CLIP { 0 } else { (values[at] - predicted).abs() };
+        }
+    }
+    Ok(())
+}
+
+/// The class of a number's size, with two more limits for large ones.
+fn size(value: i32) -> usize {
+    class(value.abs(), [1, 3, 6, 12])
+}
+
+fn patterns<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Error> {
+    const N: usize = DEFORM_NODES;
+    let patterns = &mut weights.patterns;
+    patterns.resize(usize::from(weights.rank) * N * N, 0);
+    for at in 0..patterns.len() {
+        let (row, column) = (at / N % N, at % N);
+        if column == 0 {
+            check(&model.coder)?;
+        }
+        let near = |there: bool, back: usize| if there { i32::from(patterns[at - back]) } else { 0 };
+        let left = near(column > 0, 1);
+        let below = near(row > 0, N);
+        let right = near(row > 0 && column < N - 1, N - 1);
+        let before = near(at >= N * N, N * N);
+        let sign = |value: i32| class(value, [-8, -2, 0, 1, 3]);
+        let rim = |at: usize| at.min(N - 1 - at).min(2);
+        let large = usize::from(size(before) + size(right) > 1);
+        let contexts = [
+            size(left) * 5 + size(below),
+            sign(left) * 6 + sign(below),
+            rim(row) * 3 + rim(column) + 9 * large,
+        ];
+        patterns[at] = model.signed(PATTERN, contexts, patterns[at].into()) as i8;
+    }
+    Ok(())
+}
+
+fn embedding<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: Scale) -> Result<(), Error> {
+    let (rank, sizes) = (usize::from(weights.rank), scale.sizes());
+    let jumps = warp::jumps(&weights.warp_y, scale);
+    let embedding = &mut weights.embedding;
+    embedding.resize(rank * sizes, 0);
+    let size = |value: i32| class(value.abs(), [1, 3, 5, 9, 16]);
+    let sign = |value: i32| class(value, [-8, -2, 0, 3, 9]);
+    for pattern in 0..rank {
+        check(&model.coder)?;
+        for (s, jump) in jumps.iter().enumerate() {
+            let value = |back: usize, pattern: usize| match s.checked_sub(back) {
+                Some(s) => i32::from(embedding[s * rank + pattern]),
+                None => 0,
+            };
+            let (before, earlier) = (value(1, pattern), value(2, pattern));
+            let other = if pattern > 0 { value(0, pattern - 1) - value(1, pattern - 1) } else { 0 };
+            let contexts = [
+                sign(earlier - before) * 6 + sign(before),
+                class((before - earlier).abs(), [1, 3, 5, 9]) * 5 + class(*jump, [4, 10, 18, 26]),
+                size(other) * 6 + size(before),
+            ];
+            let coded = model.signed(EMBEDDING, contexts, value(0, pattern) - before);
+            embedding[s * rank + pattern] = before.wrapping_add(coded) as i8;
+        }
+    }
+    Ok(())
+}
+
+/// Turns lists of places, one number for each size, into bytes.
+#[cfg(feature = "convert")]
+pub(super) fn encode_places(lists: &[&[i8]]) -> Vec<u8> {
+    let mut model = Model::new(Encoder::new(), &PRIOR);
+    for list in lists {
+        places(&mut model, &mut list.to_vec());
+    }
+    model.coder.finish()
+}
+
+/// Reads `count` lists of places back, one after the other.
+pub(super) fn decode_places(bytes: &[u8], count: usize, sizes: usize) -> Result<Vec<i8>, Error> {
+    let damaged = |what: &str| Error::Malformed(format!("the list of places {what}; convert the font again"));
+    let mut model = Model::new(Decoder::new(bytes), &PRIOR);
+    let mut lists = vec![0; count * sizes];
+    for list in lists.chunks_exact_mut(sizes) {
+        if model.coder.is_spent() {
+            return Err(damaged("ends early"));
+        }
+        places(&mut model, list);
+    }
+    finish(model.coder, damaged)?;
+    Ok(lists)
+}
+
+fn places<C: Coder>(model: &mut Model<'_, C>, list: &mut [i8]) {
+    let (mut before, mut step) = (0i32, 0i32);
+    for place in list {
+        let context = class(before, [0, 1]) * 3 + class(step, [0, 1]);
+        step = model.signed(PLACE, [context, 0, 0], i32::from(*place) - before);
+        *place = before.wrapping_add(step) as i8;
+        before = i32::from(*place);
+    }
 }

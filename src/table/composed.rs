@@ -15,7 +15,7 @@ pub(super) const PART_NUMBERS: usize = 5;
 /// Stands for no places: the part does not snap.
 pub(super) const NO_SNAPS: u16 = u16::MAX;
 /// How many composed glyphs, parts and lists of places there are, and the length of those lists, packed.
-pub(super) const COUNTS_AT: usize = 44;
+pub(super) const COUNTS_AT: usize = 40;
 
 /// The composed glyphs of a table.
 #[derive(Debug, Clone, Copy)]

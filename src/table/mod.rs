@@ -2,12 +2,20 @@
 
 pub mod codec;
 mod composed;
+mod contexts;
+#[cfg(feature = "convert")]
+mod cost;
+mod priors;
+mod range;
 mod reader;
+mod warp;
 #[cfg(feature = "convert")]
 mod writer;
 
 pub use composed::Gids;
-pub use reader::{ModelDecoder, Table};
+#[cfg(feature = "convert")]
+pub use cost::{Cost, cost, learn_priors};
+pub use reader::{PartsDecoder, Table};
 #[cfg(feature = "convert")]
 pub use writer::{GlyphModel, write};
 
@@ -22,13 +30,9 @@ pub const MAJOR_VERSION: u16 = 1;
 /// Additions that older readers can ignore count this up.
 pub const MINOR_VERSION: u16 = 0;
 /// Bytes before the arrays.
-pub(crate) const HEADER_LEN: usize = 56;
-/// The four bytes that begin a zstd frame; they are left out of the table.
-pub(crate) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
-/// No model decompresses to more than this.
-pub(crate) const MAX_MODEL_BYTES: usize = 1 << 16;
-/// No zstd dictionary is larger than this.
-pub(crate) const MAX_DICTIONARY_BYTES: usize = 1 << 16;
+pub(crate) const HEADER_LEN: usize = 52;
+/// The table says where every model of so many begins.
+pub(crate) const BLOCK: usize = 64;
 /// The flag that says that outlines were dropped.
 pub(crate) const OUTLINES_DROPPED: u8 = 1;
 /// No glyph is put together from more parts than this.

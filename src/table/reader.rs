@@ -2,11 +2,9 @@
 
 use read_fonts::FontData;
 use read_fonts::types::BigEndian;
-use ruzstd::decoding::{BlockDecodingStrategy, Dictionary, FrameDecoder};
 
 use super::{
-    HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MAX_SNAP_BYTES,
-    MAX_TRAINED_PPEM, OUTLINES_DROPPED, ZSTD_MAGIC, codec,
+    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_SNAP_BYTES, MAX_TRAINED_PPEM, OUTLINES_DROPPED, codec,
     composed::{ComposedGlyphs, Gids},
 };
 use crate::error::Error;
@@ -20,10 +18,11 @@ pub struct Table<'a> {
     header: Header,
     len: usize,
     gids: &'a [BigEndian<u16>],
-    bounds: &'a [BigEndian<i16>],
-    ends: &'a [BigEndian<u32>],
+    /// The length of each packed model.
+    lengths: &'a [BigEndian<u16>],
+    /// Where the models of each block begin.
+    blocks: &'a [BigEndian<u32>],
     composed: ComposedGlyphs<'a>,
-    dictionary: &'a [u8],
     payload: &'a [u8],
 }
 
@@ -62,11 +61,11 @@ impl<'a> Table<'a> {
             outline_hash: u64_at(12)?,
             outlines_dropped: u8_at(5)? & OUTLINES_DROPPED != 0,
             seed: u64_at(20)?,
-            steps: u16_at(36)?,
-            knots: u8_at(38)?,
-            rank: u8_at(39)?,
-            cell: u16_at(40)?,
-            skipped: u8_at(42)?,
+            steps: u16_at(32)?,
+            knots: u8_at(34)?,
+            rank: u8_at(35)?,
+            cell: u16_at(36)?,
+            skipped: u8_at(38)?,
         };
         if header.first_ppem == 0
             || header.first_ppem > header.last_ppem
@@ -79,27 +78,19 @@ impl<'a> Table<'a> {
             )));
         }
         let count = usize::from(u16_at(10)?);
-        let (dictionary_len, payload_len) = (u32_at(28)? as usize, u32_at(32)? as usize);
-        if dictionary_len > MAX_DICTIONARY_BYTES {
-            return Err(Error::LimitExceeded(format!(
-                "table 'Nfrt' has a dictionary of {dictionary_len} bytes"
-            )));
-        }
+        let payload_len = u32_at(28)? as usize;
         let gids_at = HEADER_LEN;
-        let bounds_at = gids_at + 2 * count;
-        let ends_at = bounds_at + 8 * count;
-        let dictionary_at = ends_at + 4 * count;
-        let payload_at = dictionary_at + dictionary_len;
+        let lengths_at = gids_at + 2 * count;
+        let blocks_at = lengths_at + 2 * count;
+        let payload_at = blocks_at + 4 * count.div_ceil(BLOCK);
         let composed_at = payload_at.checked_add(payload_len).ok_or_else(truncated)?;
-        let slice = |range: std::ops::Range<usize>| bytes.get(range).ok_or_else(truncated);
         let table = Self {
             header,
             len: bytes.len(),
-            gids: data.read_array(gids_at..bounds_at).map_err(|_| truncated())?,
-            bounds: data.read_array(bounds_at..ends_at).map_err(|_| truncated())?,
-            ends: data.read_array(ends_at..dictionary_at).map_err(|_| truncated())?,
-            dictionary: slice(dictionary_at..payload_at)?,
-            payload: slice(payload_at..composed_at)?,
+            gids: data.read_array(gids_at..lengths_at).map_err(|_| truncated())?,
+            lengths: data.read_array(lengths_at..blocks_at).map_err(|_| truncated())?,
+            blocks: data.read_array(blocks_at..payload_at).map_err(|_| truncated())?,
+            payload: bytes.get(payload_at..composed_at).ok_or_else(truncated)?,
             composed: ComposedGlyphs::parse(data, composed_at)?,
         };
         Ok(table)
@@ -134,19 +125,22 @@ impl<'a> Table<'a> {
         self.gids.binary_search_by_key(&gid, |g| g.get()).ok()
     }
 
-    /// A glyph's outline box in font units and its compressed model.
-    fn entry(&self, gid: u16) -> Result<([i16; 4], &'a [u8]), Error> {
+    /// A glyph's packed model.
+    fn packed(&self, gid: u16) -> Result<&'a [u8], Error> {
         let index = self.find(gid).ok_or(Error::MissingGlyph(gid))?;
-        let bounds = [0, 1, 2, 3].map(|k| self.bounds[4 * index + k].get());
-        let start = if index == 0 { 0 } else { self.ends[index - 1].get() as usize };
-        let bytes = self
-            .payload
-            .get(start..self.ends[index].get() as usize)
-            .ok_or_else(|| Error::Malformed(format!("the model of glyph {gid} lies outside the table")))?;
-        Ok((bounds, bytes))
+        let block = index / BLOCK;
+        let before: usize =
+            self.lengths[block * BLOCK..index].iter().map(|length| usize::from(length.get())).sum();
+        let start = (self.blocks[block].get() as usize).saturating_add(before);
+        let end = start.saturating_add(self.lengths[index].get().into());
+        self.payload.get(start..end).ok_or_else(|| {
+            Error::Malformed(format!(
+                "the model of glyph {gid} lies outside the table; convert the font again"
+            ))
+        })
     }
 
-    /// The bytes that a glyph's compressed model takes, or the list of its parts.
+    /// The bytes that a glyph's packed model takes, or the list of its parts.
     ///
     /// # Errors
     ///
@@ -154,37 +148,8 @@ impl<'a> Table<'a> {
     pub fn model_len(&self, gid: u16) -> Result<usize, Error> {
         match self.composed.find(gid) {
             Some(index) => self.composed.len_of(index),
-            None => self.entry(gid).map(|(_, bytes)| bytes.len()),
+            None => self.packed(gid).map(<[u8]>::len),
         }
-    }
-}
-
-/// Unpacks models; keeps the table's dictionary and its own memory between calls.
-pub struct ModelDecoder {
-    frames: FrameDecoder,
-    dictionary: Option<u32>,
-    frame: Vec<u8>,
-    /// The places of parts that snap; unpacked when the first composed glyph is asked for.
-    snaps: Option<Vec<i8>>,
-}
-
-impl ModelDecoder {
-    /// Prepares for a table's models.
-    ///
-    /// # Errors
-    ///
-    /// `Malformed` if the table's dictionary is damaged.
-    pub fn new(table: &Table<'_>) -> Result<Self, Error> {
-        let mut frames = FrameDecoder::new();
-        frames.set_max_window_size(MAX_MODEL_BYTES as u64);
-        let mut dictionary = None;
-        if !table.dictionary.is_empty() {
-            let decoded = Dictionary::decode_dict(table.dictionary)
-                .map_err(|e| Error::Malformed(format!("table 'Nfrt' has a damaged dictionary ({e})")))?;
-            dictionary = Some(decoded.id);
-            frames.add_dict(decoded).map_err(|e| Error::Malformed(e.to_string()))?;
-        }
-        Ok(Self { frames, dictionary, frame: Vec::new(), snaps: None })
     }
 
     /// Unpacks one glyph's weights.
@@ -192,14 +157,21 @@ impl ModelDecoder {
     /// # Errors
     ///
     /// `MissingGlyph` if the glyph has no model, `Malformed` or `LimitExceeded` if its bytes are damaged.
-    pub fn decode(&mut self, table: &Table<'_>, gid: u16, scale: Scale) -> Result<Weights, Error> {
-        let (bounds, packed) = table.entry(gid)?;
-        let bytes =
-            self.unpack(packed, self.dictionary, MAX_MODEL_BYTES, &format!("the model of glyph {gid}"))?;
-        codec::decode(&bytes, bounds, scale)
+    pub fn weights(&self, gid: u16, scale: Scale) -> Result<Weights, Error> {
+        codec::decode(self.packed(gid)?, scale)
     }
+}
 
-    /// Unpacks the parts of a composed glyph. Each is a glyph that has a model of its own.
+/// Unpacks the parts of a table's composed glyphs.
+#[derive(Debug, Default)]
+pub struct PartsDecoder {
+    /// The places of parts that snap; unpacked when the first composed glyph is asked for.
+    snaps: Option<Vec<i8>>,
+}
+
+impl PartsDecoder {
+    /// Unpacks the parts of a composed glyph. Each is a glyph that has a model of its own. The decoder belongs to
+    /// this table from then on.
     ///
     /// # Errors
     ///
@@ -208,52 +180,16 @@ impl ModelDecoder {
         let snaps = match self.snaps.take() {
             Some(snaps) => snaps,
             None => {
-                let most = table.composed.snap_count() * scale.sizes();
-                if most > MAX_SNAP_BYTES {
+                let (count, sizes) = (table.composed.snap_count(), scale.sizes());
+                if count * sizes > MAX_SNAP_BYTES {
+                    let most = count * sizes;
                     return Err(Error::LimitExceeded(format!("table 'Nfrt' has {most} bytes of places")));
                 }
-                let bytes = match table.composed.packed_snaps() {
-                    [] => Vec::new(),
-                    packed => self.unpack(packed, None, most, "the list of places")?,
-                };
-                bytes.into_iter().map(|byte| byte as i8).collect()
+                codec::decode_places(table.composed.packed_snaps(), count, sizes)?
             }
         };
         let parts = table.composed.parts(gid, table.gids, &snaps, scale.sizes());
         self.snaps = Some(snaps);
         parts
-    }
-
-    fn unpack(
-        &mut self,
-        packed: &[u8],
-        dictionary: Option<u32>,
-        most: usize,
-        what: &str,
-    ) -> Result<Vec<u8>, Error> {
-        let damaged = |e: &dyn std::fmt::Display| {
-            Error::Malformed(format!("{what} cannot be unpacked ({e}); convert the font again"))
-        };
-        self.frame.clear();
-        self.frame.extend_from_slice(&ZSTD_MAGIC);
-        self.frame.extend_from_slice(packed);
-        let mut source = self.frame.as_slice();
-        self.frames.init(&mut source).map_err(|e| damaged(&e))?;
-        if let Some(id) = dictionary {
-            self.frames.force_dict(id).map_err(|e| damaged(&e))?;
-        }
-        let mut bytes = Vec::new();
-        // Frame by frame of at most the limit: what claims to be larger is stopped before it is unpacked.
-        while !self.frames.is_finished() {
-            self.frames
-                .decode_blocks(&mut source, BlockDecodingStrategy::UptoBytes(most))
-                .map_err(|e| damaged(&e))?;
-            self.frames.collect_to_writer(&mut bytes).map_err(|e| damaged(&e))?;
-            if bytes.len() > most {
-                return Err(Error::LimitExceeded(format!("{what} is larger than any can be")));
-            }
-        }
-        self.frames.collect_to_writer(&mut bytes).map_err(|e| damaged(&e))?;
-        Ok(bytes)
     }
 }

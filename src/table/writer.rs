@@ -4,18 +4,16 @@ use std::collections::HashMap;
 
 use super::composed::{COUNTS_AT, NO_SNAPS};
 use super::{
-    HEADER_LEN, Header, MAJOR_VERSION, MAX_DICTIONARY_BYTES, MAX_MODEL_BYTES, MAX_PARTS, MAX_SNAP_BYTES,
-    MINOR_VERSION, OUTLINES_DROPPED, ZSTD_MAGIC, codec,
+    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_PARTS, MAX_SNAP_BYTES, MINOR_VERSION, OUTLINES_DROPPED,
+    codec,
 };
 use crate::error::Error;
 use crate::model::Target;
 use crate::model::compose::{Composed, Origin};
 use crate::model::gridfit::{Scale, Weights};
 
-/// zstd's strongest level: models are packed once and are small.
-const LEVEL: i32 = 22;
-/// Dictionary sizes to try. What a dictionary costs has to come back in the models.
-const DICTIONARY_SIZES: [usize; 5] = [1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14];
+/// No packed model is longer than this: the table stores lengths in 16 bits.
+const MAX_MODEL_BYTES: usize = u16::MAX as usize;
 
 /// One glyph for the table.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,55 +24,36 @@ pub struct GlyphModel {
     pub weights: Weights,
 }
 
-fn packing(e: &std::io::Error) -> Error {
-    Error::Io(format!("zstd cannot pack the models: {e}"))
-}
-
 /// Writes a table. `models` and `composed` are in ascending order of their glyphs, and every part has a model.
 /// Returns the table and the length of each packed model.
 ///
 /// # Errors
 ///
 /// `LimitExceeded` for a model or parts that readers would refuse, `InvalidParameter` for a part without a model
-/// or with the wrong number of places, `Io` if zstd fails.
+/// or with the wrong number of places.
 pub fn write(
     header: &Header,
     models: &[GlyphModel],
     composed: &[Composed],
     scale: Scale,
 ) -> Result<(Vec<u8>, Vec<usize>), Error> {
-    let plain: Vec<Vec<u8>> = models.iter().map(|m| plain(m, scale)).collect::<Result<_, _>>()?;
-    let mut best = (Vec::new(), pack(&plain, &[])?);
-    let total = |(dictionary, packed): &(Vec<u8>, Vec<Vec<u8>>)| {
-        dictionary.len() + packed.iter().map(Vec::len).sum::<usize>()
-    };
-    for size in DICTIONARY_SIZES.into_iter().filter(|s| *s <= MAX_DICTIONARY_BYTES) {
-        // Too few models for a dictionary are no failure: they are packed without one.
-        let Ok(dictionary) = zstd::dict::from_samples(&plain, size) else { continue };
-        let packed = pack(&plain, &dictionary)?;
-        let candidate = (dictionary, packed);
-        if total(&candidate) < total(&best) {
-            best = candidate;
-        }
-    }
-    let (dictionary, packed) = best;
-    let mut out = Vec::with_capacity(HEADER_LEN + 14 * models.len() + dictionary.len());
-    put_header(&mut out, header, models.len(), dictionary.len(), packed.iter().map(Vec::len).sum());
+    let packed = models.iter().map(|m| pack(m, scale)).collect::<Result<Vec<_>, _>>()?;
+    let mut out = Vec::with_capacity(HEADER_LEN + 5 * models.len());
+    put_header(&mut out, header, models.len(), packed.iter().map(Vec::len).sum());
     out.resize(HEADER_LEN, 0);
     out.extend(models.iter().flat_map(|m| m.gid.to_be_bytes()));
-    out.extend(models.iter().flat_map(|m| m.weights.bounds).flat_map(i16::to_be_bytes));
-    let mut end = 0u32;
-    for model in &packed {
-        end += model.len() as u32;
-        out.extend(end.to_be_bytes());
+    out.extend(packed.iter().flat_map(|bytes| (bytes.len() as u16).to_be_bytes()));
+    let mut start = 0u32;
+    for block in packed.chunks(BLOCK) {
+        out.extend(start.to_be_bytes());
+        start += block.iter().map(|bytes| bytes.len() as u32).sum::<u32>();
     }
-    out.extend_from_slice(&dictionary);
     out.extend(packed.iter().flatten());
     put_composed(&mut out, models, composed, scale)?;
     Ok((out, packed.iter().map(Vec::len).collect()))
 }
 
-fn plain(model: &GlyphModel, scale: Scale) -> Result<Vec<u8>, Error> {
+fn pack(model: &GlyphModel, scale: Scale) -> Result<Vec<u8>, Error> {
     let too_large = || {
         let gid = model.gid;
         Error::LimitExceeded(format!(
@@ -88,7 +67,7 @@ fn plain(model: &GlyphModel, scale: Scale) -> Result<Vec<u8>, Error> {
     if bytes.len() <= MAX_MODEL_BYTES { Ok(bytes) } else { Err(too_large()) }
 }
 
-fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, dictionary: usize, payload: usize) {
+fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, payload: usize) {
     let target = match header.target {
         Target::Smooth => 0u8,
         Target::Mono => 1,
@@ -102,7 +81,6 @@ fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, dictionary: usi
     out.extend((glyphs as u16).to_be_bytes());
     out.extend(header.outline_hash.to_be_bytes());
     out.extend(header.seed.to_be_bytes());
-    out.extend((dictionary as u32).to_be_bytes());
     out.extend((payload as u32).to_be_bytes());
     out.extend(header.steps.to_be_bytes());
     out.extend([header.knots, header.rank]);
@@ -156,8 +134,7 @@ fn put_composed(
             lists.len()
         )));
     }
-    let places: Vec<u8> = lists.iter().copied().flatten().map(|place| *place as u8).collect();
-    let packed = if places.is_empty() { Vec::new() } else { pack(&[places], &[])?.concat() };
+    let packed = codec::encode_places(&lists);
     let mut counts = Vec::with_capacity(HEADER_LEN - COUNTS_AT);
     counts.extend((composed.len() as u16).to_be_bytes());
     counts.extend((lists.len() as u16).to_be_bytes());
@@ -169,22 +146,4 @@ fn put_composed(
     out.extend(parts);
     out.extend(packed);
     Ok(())
-}
-
-/// Packs each model on its own, without zstd's magic number, checksum and dictionary number.
-fn pack(plain: &[Vec<u8>], dictionary: &[u8]) -> Result<Vec<Vec<u8>>, Error> {
-    use zstd::zstd_safe::CParameter;
-    let mut compressor =
-        zstd::bulk::Compressor::with_dictionary(LEVEL, dictionary).map_err(|e| packing(&e))?;
-    for parameter in [CParameter::ChecksumFlag(false), CParameter::DictIdFlag(false)] {
-        compressor.set_parameter(parameter).map_err(|e| packing(&e))?;
-    }
-    plain
-        .iter()
-        .map(|bytes| {
-            let frame = compressor.compress(bytes).map_err(|e| packing(&e))?;
-            let body = frame.strip_prefix(&ZSTD_MAGIC).unwrap_or(&frame);
-            Ok(body.to_vec())
-        })
-        .collect()
 }

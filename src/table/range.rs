@@ -1,0 +1,218 @@
+//! A binary arithmetic coder: one decision after the other, each with its probability.
+//!
+//! It is the carry-less coder of lpaq: an interval of 32-bit numbers is split in proportion, and a leading byte that
+//! both ends share is done with. constriction 0.5, the crate for this, ends each message with whole words of 16 or
+//! 32 bits and brings five dependencies; a glyph is some hundreds of bytes, and the renderer's list of dependencies is
+//! to stay short.
+
+/// What a probability is a share of.
+pub(super) const ONE: u32 = 1 << 12;
+
+/// Codes decisions: writes them, reads them, or adds up what they would cost.
+pub(super) trait Coder {
+    /// Whether the decisions are known beforehand.
+    const WRITES: bool;
+
+    /// Codes a decision that is 1 with probability `odds` / [`ONE`], which is neither 0 nor 1. A reader ignores
+    /// `bit` and returns what it has read.
+    fn bit(&mut self, odds: u32, bit: bool) -> bool;
+
+    /// Whether more has been read than there is: what follows means nothing.
+    fn is_spent(&self) -> bool {
+        false
+    }
+
+    /// Tells where a decision's odds came from: the contexts' slots, what each said, and their mixture.
+    #[inline]
+    fn watch(&mut self, _slots: [usize; 3], _said: [i32; 3], _mix: usize, _odds: u32, _bit: bool) {}
+}
+
+/// The interval and how a decision splits it.
+#[derive(Debug, Clone, Copy)]
+struct Interval {
+    low: u32,
+    high: u32,
+}
+
+impl Interval {
+    const WHOLE: Self = Self { low: 0, high: u32::MAX };
+
+    /// The last number that stands for a 1.
+    fn split(self, odds: u32) -> u32 {
+        self.low + (u64::from(self.high - self.low) * u64::from(odds) / u64::from(ONE)) as u32
+    }
+
+    fn narrow(&mut self, split: u32, bit: bool) {
+        if bit {
+            self.high = split;
+        } else {
+            self.low = split + 1;
+        }
+    }
+
+    /// The leading byte, if both ends share it; the interval then goes on with the bytes behind.
+    fn settled(&mut self) -> Option<u8> {
+        if (self.low ^ self.high) >> 24 != 0 {
+            return None;
+        }
+        let byte = (self.low >> 24) as u8;
+        self.low <<= 8;
+        self.high = self.high << 8 | 0xFF;
+        Some(byte)
+    }
+
+    /// The byte that ends a message, so that zeros after it stay within the interval; none if zeros alone do.
+    fn last(self) -> Option<u8> {
+        (self.low > 0).then_some((self.low.saturating_add(0x00FF_FFFF) >> 24) as u8)
+    }
+}
+
+/// Writes decisions.
+#[cfg(feature = "convert")]
+#[derive(Debug)]
+pub(super) struct Encoder {
+    interval: Interval,
+    bytes: Vec<u8>,
+}
+
+#[cfg(feature = "convert")]
+impl Encoder {
+    pub(super) fn new() -> Self {
+        Self { interval: Interval::WHOLE, bytes: Vec::new() }
+    }
+
+    pub(super) fn finish(mut self) -> Vec<u8> {
+        self.bytes.extend(self.interval.last());
+        self.bytes
+    }
+}
+
+#[cfg(feature = "convert")]
+impl Coder for Encoder {
+    const WRITES: bool = true;
+
+    fn bit(&mut self, odds: u32, bit: bool) -> bool {
+        self.interval.narrow(self.interval.split(odds), bit);
+        while let Some(byte) = self.interval.settled() {
+            self.bytes.push(byte);
+        }
+        bit
+    }
+}
+
+/// Reads decisions. Beyond the end of the bytes there are zeros.
+#[derive(Debug)]
+pub(super) struct Decoder<'a> {
+    interval: Interval,
+    bytes: &'a [u8],
+    /// How many bytes are settled; four more are in `window`.
+    settled: usize,
+    window: u32,
+}
+
+/// How a message can fail to end where its bytes do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    Early,
+    Late,
+}
+
+impl<'a> Decoder<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        let mut decoder = Self { interval: Interval::WHOLE, bytes, settled: 0, window: 0 };
+        decoder.window = (0..4).fold(0, |window, at| window << 8 | decoder.byte(at));
+        decoder
+    }
+
+    fn byte(&self, at: usize) -> u32 {
+        self.bytes.get(at).copied().unwrap_or(0).into()
+    }
+
+    /// Checks that the message ends where its bytes do.
+    pub(super) fn finish(self) -> Result<(), End> {
+        let length = self.settled + usize::from(self.interval.last().is_some());
+        match length.cmp(&self.bytes.len()) {
+            std::cmp::Ordering::Greater => Err(End::Early),
+            std::cmp::Ordering::Equal => Ok(()),
+            std::cmp::Ordering::Less => Err(End::Late),
+        }
+    }
+}
+
+impl Coder for Decoder<'_> {
+    const WRITES: bool = false;
+
+    #[inline]
+    fn bit(&mut self, odds: u32, _bit: bool) -> bool {
+        let split = self.interval.split(odds);
+        let bit = self.window <= split;
+        self.interval.narrow(split, bit);
+        while self.interval.settled().is_some() {
+            self.window = self.window << 8 | self.byte(self.settled + 4);
+            self.settled += 1;
+        }
+        bit
+    }
+
+    fn is_spent(&self) -> bool {
+        self.settled > self.bytes.len()
+    }
+}
+
+#[cfg(all(test, feature = "convert"))]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn decisions() -> impl Strategy<Value = Vec<(u32, bool)>> {
+        let odds = prop_oneof![1..ONE, Just(1), Just(ONE - 1), Just(ONE / 2)];
+        prop::collection::vec((odds, any::<bool>()), 0..2000)
+    }
+
+    fn encode(decisions: &[(u32, bool)]) -> Vec<u8> {
+        let mut encoder = Encoder::new();
+        decisions.iter().for_each(|(odds, bit)| {
+            encoder.bit(*odds, *bit);
+        });
+        encoder.finish()
+    }
+
+    fn decode(bytes: &[u8], decisions: &[(u32, bool)]) -> (Vec<bool>, Result<(), End>) {
+        let mut decoder = Decoder::new(bytes);
+        let bits = decisions.iter().map(|(odds, _)| decoder.bit(*odds, false)).collect();
+        (bits, decoder.finish())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn decisions_are_read_as_they_were_written(decisions in decisions()) {
+            let expected: Vec<bool> = decisions.iter().map(|(_, bit)| *bit).collect();
+            prop_assert_eq!(decode(&encode(&decisions), &decisions), (expected, Ok(())));
+        }
+
+        #[test]
+        fn decisions_take_as_many_bits_as_their_odds_say(decisions in decisions()) {
+            let bits: f64 = decisions
+                .iter()
+                .map(|&(odds, bit)| -(f64::from(if bit { odds } else { ONE - odds }) / f64::from(ONE)).log2())
+                .sum();
+            let bytes = encode(&decisions).len() as f64;
+            prop_assert!((bytes - bits / 8.0).abs() <= 2.0 + 0.001 * bits, "{bytes} for {bits} bits");
+        }
+
+        #[test]
+        fn other_lengths_never_mean_the_same(decisions in decisions(), at in any::<prop::sample::Index>()) {
+            let mut bytes = encode(&decisions);
+            let expected: Vec<bool> = decisions.iter().map(|(_, bit)| *bit).collect();
+            if !bytes.is_empty() {
+                prop_assert_ne!(
+                    decode(&bytes[..at.index(bytes.len())], &decisions), (expected.clone(), Ok(()))
+                );
+            }
+            bytes.push(0);
+            prop_assert_eq!(decode(&bytes, &decisions), (expected, Err(End::Late)));
+        }
+    }
+}
