@@ -10,6 +10,7 @@ pub mod open;
 pub mod partial;
 pub mod pipeline;
 pub mod ppem;
+mod predict;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod samples;
