@@ -85,7 +85,7 @@ impl Plan {
     /// Gives parts that stand on whole pixels their places at the sizes of `scale` that were not `shown`.
     pub(super) fn complete(&mut self, predictor: &Predictor, scale: Scale, shown: Scale) {
         for part in self.composed.iter_mut().flat_map(|glyph| &mut glyph.parts) {
-            for (offset, snaps) in part.offset.iter().zip(&mut part.snaps) {
+            for (axis, (offset, snaps)) in part.offset.iter().zip(&mut part.snaps).enumerate() {
                 if !snaps.is_empty() {
                     let near = |scale: Scale, size| {
                         f64::from(snapped(*offset, scale.ppem_of(size), scale.units_per_em))
@@ -93,7 +93,7 @@ impl Plan {
                     let places: Vec<f64> =
                         snaps.iter().enumerate().map(|(k, snap)| near(shown, k) + f64::from(*snap)).collect();
                     let em = f64::from(*offset) / f64::from(scale.units_per_em);
-                    let places = predictor.places(em, &places);
+                    let places = predictor.places(axis, em, &places);
                     // Casting clamps, and so far nothing snaps.
                     *snaps = places.iter().enumerate().map(|(k, at)| (at - near(scale, k)) as i8).collect();
                 }

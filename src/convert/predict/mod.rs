@@ -83,13 +83,13 @@ impl Predictor {
         lesson.sizes.sort_by_key(|size| size.ppem);
     }
 
-    /// The places of a part that stands on whole pixels (pixels), at all sizes in order: `plain` is its offset in
-    /// em, `places` are those at the known sizes.
-    pub(super) fn places(&self, plain: f64, places: &[f64]) -> Vec<f64> {
+    /// The places along an axis of a part that stands on whole pixels (pixels), at all sizes in order: `plain` is
+    /// its offset in em, `places` are those at the known sizes.
+    pub(super) fn places(&self, axis: usize, plain: f64, places: &[f64]) -> Vec<f64> {
         let track = Track { plain, hinted: places.to_vec() };
         let mut all: Vec<(u16, f64)> = self.known.iter().copied().zip(places.iter().copied()).collect();
         for wanted in &self.wanted {
-            let settled = settle(std::slice::from_ref(&track), &wanted.view, &wanted.zones[1]);
+            let settled = settle(std::slice::from_ref(&track), &wanted.view, &wanted.zones[axis]);
             all.extend(settled.first().map(|place| (wanted.ppem, place.at.round())));
         }
         all.sort_by_key(|(ppem, _)| *ppem);

@@ -100,34 +100,41 @@ fn a_level_of_the_font_leads_levels_near_it() {
     assert_eq!(found, [flat(31.0), round(31.0)]);
 }
 
-/// Prediction has at most this share of the plain outline's error at sizes that are left out. It has 0.35 of it in
-/// these letters; rules of fonts cannot all be seen from every second size.
-const BETTER: f64 = 0.5;
+/// Prediction has at most this share of the plain outline's error at the sizes left out. It has a fifth to a third of
+/// it; what fonts decide by hand at a size cannot be told from others.
+const BETTER: f64 = 0.4;
 
 #[test]
 fn outlines_at_sizes_left_out_come_close_to_the_hinted_ones() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/fonts/LiberationSerif-Regular.ttf");
-    let data = std::fs::read(path).unwrap();
+    for name in ["LiberationSans-Regular", "LiberationSerif-Regular", "DejaVuSans"] {
+        let [predicted, plain] = errors(name);
+        eprintln!("{name}: predicted {predicted:.5}, plain {plain:.5}");
+        assert!(predicted <= BETTER * plain, "{name}: {predicted} for {plain}");
+    }
+}
+
+/// The error (mae) of predicted and of plain outlines at odd sizes, printable ASCII.
+fn errors(name: &str) -> [f64; 2] {
+    let data = std::fs::read(format!("{}/fonts/{name}.ttf", env!("CARGO_MANIFEST_DIR"))).unwrap();
     let font = FontRef::new(&data).unwrap();
     let teacher = Teacher::new(&font, Target::Smooth).unwrap();
-    let gids: Vec<u16> =
-        ('a'..='z').map(|c| font.cmap().unwrap().map_codepoint(c).unwrap().to_u32() as u16).collect();
+    let gid = |c: char| font.cmap().unwrap().map_codepoint(c).unwrap().to_u32() as u16;
+    let gids: Vec<u16> = ('!'..='~').map(gid).collect();
     let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 64, step: 1 };
     // The predictor is given the teacher at even sizes and never hears of the others.
     let shown: Vec<_> = known().iter().map(|size| teacher.at(*size).unwrap()).collect();
     let predictor = Predictor::new(&teacher, &shown, scale, &gids).unwrap();
-    let (mut predicted, mut plain) = (Sums::default(), Sums::default());
+    let hidden: Vec<_> = (9..64).step_by(2).map(|size| teacher.at(size).unwrap()).collect();
+    let mut sums = [Sums::default(); 2];
     for gid in gids {
         let mut lesson = crate::convert::teach::lesson(&teacher, &shown, gid).unwrap();
         predictor.complete(&mut lesson);
         assert!(lesson.sizes.iter().map(|size| size.ppem).eq(8..=64));
-        for size in lesson.sizes.iter().filter(|size| size.predicted) {
-            let truth = teacher.at(size.ppem).unwrap().hinted(gid).unwrap().rasterize();
-            predicted.add(&truth, &size.bitmap);
-            plain.add(&truth, &teacher.unhinted(gid, size.ppem.into()).unwrap().rasterize());
+        for (size, truth) in lesson.sizes.iter().filter(|size| size.predicted).zip(&hidden) {
+            let truth = truth.hinted(gid).unwrap().rasterize();
+            sums[0].add(&truth, &size.bitmap);
+            sums[1].add(&truth, &teacher.unhinted(gid, size.ppem.into()).unwrap().rasterize());
         }
     }
-    let (predicted, plain) = (predicted.mae(), plain.mae());
-    eprintln!("predicted {predicted:.5}, plain {plain:.5}");
-    assert!(predicted <= BETTER * plain, "{predicted} for {plain}");
+    sums.map(|sums| sums.mae())
 }
