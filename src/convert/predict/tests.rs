@@ -101,15 +101,20 @@ fn a_level_of_the_font_leads_levels_near_it() {
 }
 
 /// Prediction has at most this share of the plain outline's error at the sizes left out. It has a fifth to a third of
-/// it; what fonts decide by hand at a size cannot be told from others.
-const BETTER: f64 = 0.4;
+/// it, and half of it in Roboto; what a font decides by hand at one size cannot be told from others.
+const BETTER: [(&str, f64); 4] = [
+    ("LiberationSans-Regular", 0.4),
+    ("LiberationSerif-Regular", 0.4),
+    ("DejaVuSans", 0.4),
+    ("Roboto_500Medium", 0.6),
+];
 
 #[test]
 fn outlines_at_sizes_left_out_come_close_to_the_hinted_ones() {
-    for name in ["LiberationSans-Regular", "LiberationSerif-Regular", "DejaVuSans"] {
+    for (name, better) in BETTER {
         let [predicted, plain] = errors(name);
         eprintln!("{name}: predicted {predicted:.5}, plain {plain:.5}");
-        assert!(predicted <= BETTER * plain, "{name}: {predicted} for {plain}");
+        assert!(predicted <= better * plain, "{name}: {predicted} for {plain}");
     }
 }
 
