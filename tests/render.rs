@@ -149,24 +149,21 @@ fn ink(bitmap: &Bitmap) -> f32 {
     bitmap.pixels.iter().map(|p| f32::from(*p)).sum::<f32>() / 255.0
 }
 
-/// A size between two others may have this much less or more ink than either, as a share: hinted stems jump by
-/// whole pixels, and halfway through such a jump their edges are soft.
-const BETWEEN: f32 = 0.06;
-/// The same for `%`, whose two rings jump at different sizes and by different pixels: known to be too much.
-const BETWEEN_RINGS: f32 = 0.08;
+/// A size between two others may have this much less or more ink than either, as a share: it has the rows of the
+/// nearer one and columns of its own, and stems of the other may be a pixel thicker.
+const BETWEEN: f32 = 0.05;
 
 #[test]
 fn a_size_between_two_trained_ones_lies_between_them() {
     let font = neural();
     for gid in letters() {
-        let slack = if gid == samples::gid(&ORIGINAL, '%') { BETWEEN_RINGS } else { BETWEEN };
         let glyph = font.glyph(gid).unwrap();
         for ppem in (8u8..64).map(f32::from) {
             let [low, between, high] = [0.0, 0.5, 1.0].map(|more| glyph.render(ppem + more).unwrap());
             let (least, most) = (ink(&low).min(ink(&high)), ink(&low).max(ink(&high)));
             let found = ink(&between);
             assert!(
-                found >= least * (1.0 - slack) && found <= most * (1.0 + slack),
+                found >= least * (1.0 - BETWEEN) && found <= most * (1.0 + BETWEEN),
                 "glyph {gid} at {} ppem: {found} is not in {least}..{most}",
                 ppem + 0.5
             );
@@ -178,6 +175,36 @@ fn a_size_between_two_trained_ones_lies_between_them() {
                 assert!((low.min(high)..=low.max(high)).contains(&between), "glyph {gid} at {ppem}½ ppem");
             }
         }
+    }
+}
+
+/// Pixels that are neither empty nor full, as a share of those of the box.
+fn grey(bitmap: &Bitmap) -> f32 {
+    let grey = bitmap.pixels.iter().filter(|level| (32..224).contains(*level)).count();
+    grey as f32 / bitmap.pixels.len() as f32
+}
+
+/// A size between two trained ones may have this much more grey than the nearer one: its columns lie elsewhere.
+/// Mixing the moves of two sizes would make 0.02 more (spec/experiments.md).
+const GREYER: f32 = 0.01;
+
+#[test]
+fn a_size_between_two_trained_ones_is_as_crisp_in_y() {
+    // Horizontal edges that hinting puts between two rows must not become soft at 12.3 or 12.7 ppem.
+    let font = neural();
+    let sizes = (9u8..=24).map(f32::from);
+    let mean = |more: f32| {
+        let sharpness = sizes.clone().flat_map(|ppem| letters().map(move |gid| (gid, ppem)));
+        let all: Vec<f32> = sharpness
+            .filter(|(gid, _)| *gid != samples::gid(&ORIGINAL, ' '))
+            .map(|(gid, ppem)| grey(&font.glyph(gid).unwrap().render(ppem + more).unwrap()))
+            .collect();
+        all.iter().sum::<f32>() / all.len() as f32
+    };
+    let trained = mean(0.0);
+    for more in [-0.3, 0.3, 0.45] {
+        eprintln!("{more}: {} for {trained}", mean(more));
+        assert!(mean(more) <= trained + GREYER, "{more}: {} for {trained}", mean(more));
     }
 }
 

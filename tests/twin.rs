@@ -33,15 +33,26 @@ impl Twin<'_> {
         f64::from(units) / f64::from(self.scale.units_per_em)
     }
 
-    /// What a quantity known for each trained size is at this one.
-    fn between_sizes(&self, value: impl Fn(usize) -> f64) -> f64 {
+    /// The number of the nearest trained size, halves upwards.
+    fn nearest(&self) -> usize {
+        let distance = |size: &usize| (self.scale.ppem_of(*size) as f64 - self.ppem).abs();
+        let sizes = (0..self.scale.sizes()).rev();
+        sizes.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap()
+    }
+
+    /// The size that displacements belong to.
+    fn grid_size(&self) -> f64 {
+        let trained = f64::from(self.scale.first_ppem)..=f64::from(self.scale.last_ppem);
+        if trained.contains(&self.ppem) { self.scale.ppem_of(self.nearest()) as f64 } else { self.ppem }
+    }
+
+    /// What a displacement known for each trained size is at this one.
+    fn at_size(&self, value: impl Fn(usize) -> f64) -> f64 {
         let (first, last) = (f64::from(self.scale.first_ppem), f64::from(self.scale.last_ppem));
-        let at = (self.ppem.clamp(first, last) - first) / f64::from(self.scale.step);
-        let (low, high) = (at.floor() as usize, at.ceil() as usize);
         let beyond =
             if self.ppem < first { (first - self.ppem) / first } else { (self.ppem - last).max(0.0) / last };
         let strength = (1.0 - beyond / f64::from(FADE_SPAN)).max(0.0);
-        (value(low) + (value(high) - value(low)) * at.fract()) * strength
+        value(self.nearest()) * strength
     }
 
     fn warp(&self, axis: usize) -> &AxisWarp {
@@ -54,11 +65,11 @@ impl Twin<'_> {
         let mut knots: Vec<(f64, f64)> = Vec::new();
         for (k, &units) in warp.knots.iter().enumerate() {
             let plain = self.em(units);
-            let moved = self.between_sizes(|size| {
+            let moved = self.at_size(|size| {
                 let hinted = f64::from(warp.hinted[size * warp.knots.len() + k]) / f64::from(WARP_STEPS);
                 hinted - plain * self.scale.ppem_of(size) as f64
             });
-            let hinted = plain * self.ppem + moved;
+            let hinted = plain * self.grid_size() + moved;
             let least = knots.last().map_or(f64::NEG_INFINITY, |(_, below)| below + f64::from(MIN_KNOT_GAP));
             knots.push((plain, hinted.max(least)));
         }
@@ -103,7 +114,7 @@ impl Twin<'_> {
         let hat = |at: f64, node: usize| (1.0 - (at - node as f64).abs()).max(0.0);
         let mut sum = 0.0;
         for r in 0..rank {
-            let strength = self.between_sizes(|size| {
+            let strength = self.at_size(|size| {
                 f64::from(self.weights.embedding[size * rank + r]) / f64::from(EMBEDDING_STEPS)
             });
             for (row, column) in
@@ -115,7 +126,7 @@ impl Twin<'_> {
                 sum += strength * pattern * hat(u, column) * hat(v, row);
             }
         }
-        sum / self.ppem
+        sum / self.grid_size()
     }
 
     /// The field at a point and its gradient: all coefficients, each times its B-spline.

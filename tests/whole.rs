@@ -284,14 +284,14 @@ fn dropped_outlines_are_told_of_and_the_font_is_compared_all_the_same() {
 }
 
 #[test]
-fn sizes_between_trained_ones_are_drawn() {
+fn sizes_left_out_of_the_training_are_predicted() {
     let data = sans();
     let every = options(&data, "aeg", 0);
     let options = Options { ppem: 8..=41, ppem_step: 3, ..every };
     let conversion = convert(&data, &options, &Silent).unwrap();
     let font = Font::parse(&conversion.font).unwrap();
-    assert_eq!((font.ppem_range(), font.ppem_step()), ((8, 41), 3));
-    // Trained sizes come out as if there were no others but them.
+    assert_eq!((font.ppem_range(), font.ppem_step()), ((8, 41), 1));
+    // The report is about the sizes that the teacher has shown.
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), Target::Smooth).unwrap();
     let mut sums = Sums::default();
     for ppem in (8..=41).step_by(3) {
@@ -305,7 +305,7 @@ fn sizes_between_trained_ones_are_drawn() {
         for gid in &options.gids {
             let truth = teacher.at(ppem).unwrap().hinted(*gid).unwrap().rasterize();
             let ours = font.glyph(*gid).unwrap().render(ppem.into()).unwrap();
-            // Mixed moves are not rounded to the grid, so a box may end a pixel further.
+            // A level that is rounded the other way ends a pixel further.
             let near = |a: u32, b: u32| a.abs_diff(b) <= 2;
             let (ours, truth) = (ours.placement, truth.placement);
             assert!(

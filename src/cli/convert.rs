@@ -38,8 +38,8 @@ pub struct Args {
     /// With --train-ppem, the sizes that the figures are about.
     #[arg(long, value_name = "SIZES", default_value = "8-64")]
     ppem: PpemList,
-    /// Learn these sizes instead of those of --ppem; sizes between them are drawn with what their neighbours
-    /// have learnt
+    /// Learn these sizes instead of those of --ppem; what hinting does at the sizes between is predicted from
+    /// them
     #[arg(long, value_name = "SIZES")]
     train_ppem: Option<PpemList>,
     /// What to hint for: smooth, mono or lcd

@@ -10,6 +10,7 @@ use std::rc::Rc;
 use read_fonts::tables::glyf::{CompositeGlyphFlags, Glyph};
 use read_fonts::{FontRef, TableProvider};
 
+use super::predict::Predictor;
 use super::teacher::{Teacher, TeacherAt};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
@@ -79,6 +80,25 @@ impl Plan {
             }
         }
         Ok(Self::of_parts(gids, fitting))
+    }
+
+    /// Gives parts that stand on whole pixels their places at the sizes of `scale` that were not `shown`.
+    pub(super) fn complete(&mut self, predictor: &Predictor, scale: Scale, shown: Scale) {
+        for part in self.composed.iter_mut().flat_map(|glyph| &mut glyph.parts) {
+            for (axis, (offset, snaps)) in part.offset.iter().zip(&mut part.snaps).enumerate() {
+                if !snaps.is_empty() {
+                    let near = |scale: Scale, size| {
+                        f64::from(snapped(*offset, scale.ppem_of(size), scale.units_per_em))
+                    };
+                    let places: Vec<f64> =
+                        snaps.iter().enumerate().map(|(k, snap)| near(shown, k) + f64::from(*snap)).collect();
+                    let em = f64::from(*offset) / f64::from(scale.units_per_em);
+                    let places = predictor.places(axis, em, &places);
+                    // Casting clamps, and so far nothing snaps.
+                    *snaps = places.iter().enumerate().map(|(k, at)| (at - near(scale, k)) as i8).collect();
+                }
+            }
+        }
     }
 
     /// Leaves out what would need more models than it saves.

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 use super::partial::Partial;
 use super::pipeline::{Options, Progress};
 use super::polish::polish;
+use super::predict::Predictor;
 use super::start::Draft;
 use super::teach::{Lesson, lesson};
 use super::teacher::{Teacher, TeacherAt};
@@ -24,8 +25,12 @@ const CHUNK: usize = 2;
 /// What all chunks of a conversion share.
 pub(super) struct Course<'c, 't, 'a> {
     pub(super) teacher: &'c Teacher<'a>,
+    /// The sizes that the teacher shows.
     pub(super) sizes: &'c [TeacherAt<'t, 'a>],
+    /// The sizes that models have.
     pub(super) scale: Scale,
+    /// Tells of the sizes that models have and the teacher does not show.
+    pub(super) predictor: &'c Predictor,
     pub(super) options: &'c Options,
     pub(super) progress: &'c dyn Progress,
     /// Where glyphs that are ready are kept, and those of an earlier conversion found.
@@ -97,7 +102,8 @@ impl Course<'_, '_, '_> {
     }
 
     fn lesson(&self, gid: u16) -> Result<Lesson, Error> {
-        let lesson = lesson(self.teacher, self.sizes, gid)?;
+        let mut lesson = lesson(self.teacher, self.sizes, gid)?;
+        self.predictor.complete(&mut lesson);
         if let Some(complaint) = &lesson.complaint {
             self.progress.warn(complaint);
         }
@@ -126,10 +132,10 @@ impl Course<'_, '_, '_> {
         lessons.iter().map(finished).collect()
     }
 
-    /// Draws what will be stored and compares it with the lesson.
+    /// Draws what will be stored and compares it with what the teacher has shown.
     fn judge(&self, lesson: &Lesson, glyph: &Glyph) -> Result<Sums, Error> {
         let mut sums = Sums::default();
-        for hinted in &lesson.sizes {
+        for hinted in lesson.sizes.iter().filter(|size| !size.predicted) {
             sums.add(&hinted.bitmap, &glyph.render(f32::from(hinted.ppem))?);
         }
         self.progress.glyph_done(lesson.gid, sums.figures().mae);

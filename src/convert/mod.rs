@@ -11,6 +11,7 @@ pub mod partial;
 pub mod pipeline;
 pub mod polish;
 pub mod ppem;
+mod predict;
 mod quality;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

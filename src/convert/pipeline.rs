@@ -10,6 +10,7 @@ use super::compose::Plan;
 use super::course::Course;
 use super::partial::Partial;
 use super::polish::Polish;
+use super::predict::Predictor;
 use super::quality::Quality;
 use super::start::Capacity;
 use super::teacher::{Teacher, TeacherAt};
@@ -17,6 +18,7 @@ use super::train::{Backend, Schedule};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
 use crate::model::Target;
+use crate::model::gridfit::Scale;
 use crate::table::{self, GlyphModel, Header, MAX_PPEM_STEP, MAX_TRAINED_PPEM, Table};
 
 /// What a conversion is asked to do.
@@ -28,7 +30,7 @@ pub struct Options {
     pub gids: Vec<u16>,
     /// The sizes to train on, in pixels per em.
     pub ppem: RangeInclusive<u16>,
-    /// From one of them to the next. Sizes between are drawn with what their neighbours have learnt.
+    /// From one of them to the next. What hinting does at the sizes between is predicted from these.
     pub ppem_step: u16,
     /// What the teacher hints for.
     pub target: Target,
@@ -162,17 +164,21 @@ pub fn resume(
     let teacher = Teacher::new(&font, options.target)?;
     let header = header(&font, options)?;
     let scale = header.scale(teacher.units_per_em());
-    let sizes = (0..scale.sizes())
-        .map(|size| teacher.at(scale.ppem_of(size) as u16))
+    let shown = Scale { step: options.ppem_step, ..scale };
+    let sizes = (0..shown.sizes())
+        .map(|size| teacher.at(shown.ppem_of(size) as u16))
         .collect::<Result<Vec<_>, _>>()?;
     warn_of_unhinted(&sizes, progress)?;
-    let plan = if options.compose {
-        Plan::find(&font, &teacher, &sizes, scale, &options.gids)?
+    let mut plan = if options.compose {
+        Plan::find(&font, &teacher, &sizes, shown, &options.gids)?
     } else {
         Plan::of_models(&options.gids)
     };
     progress.planned(plan.models.len() + plan.composed.len());
-    let course = Course { teacher: &teacher, sizes: &sizes, scale, options, progress, partial };
+    let predictor = Predictor::new(&teacher, &sizes, scale, &plan.models)?;
+    plan.complete(&predictor, scale, shown);
+    let course =
+        Course { teacher: &teacher, sizes: &sizes, scale, predictor: &predictor, options, progress, partial };
     let trained = course.train_all(&plan.models)?;
     let mut judged: BTreeMap<u16, Sums> = trained.iter().map(|t| (t.gid, t.sums)).collect();
     let models: Vec<GlyphModel> =
@@ -243,7 +249,7 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
         target: options.target,
         first_ppem: first,
         last_ppem: last - (last - first) % options.ppem_step,
-        skipped: (options.ppem_step - 1) as u8,
+        skipped: 0,
         outline_hash: outline_hash(font)?,
         outlines_dropped: options.drop_outlines,
         seed: options.seed,

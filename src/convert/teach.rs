@@ -27,6 +27,8 @@ pub struct HintedGlyph {
     pub points: Vec<[f32; 2]>,
     /// Its exact coverage.
     pub bitmap: Bitmap,
+    /// Whether this is what other sizes suggest, not what the teacher shows.
+    pub predicted: bool,
 }
 
 /// Draws the lesson of one glyph.
@@ -49,7 +51,7 @@ pub fn lesson(teacher: &Teacher<'_>, sizes: &[TeacherAt<'_, '_>], gid: u16) -> R
                     at.ppem()
                 )));
             }
-            Ok(HintedGlyph { ppem: at.ppem(), points: hinted.points, bitmap })
+            Ok(HintedGlyph { ppem: at.ppem(), points: hinted.points, bitmap, predicted: false })
         })
         .collect::<Result<_, _>>()?;
     Ok(Lesson { gid, outline, complaint, sizes })

@@ -74,16 +74,13 @@ impl Origin {
         Ok(Self { scale, offset: em, moves })
     }
 
-    /// The place in pixels at a size. Like the models' displacements, those between trained sizes are mixed,
-    /// and beyond the trained sizes they fade.
+    /// The place in pixels at a size. A part that snaps stands where it does at the trained size that
+    /// stands for this one; beyond the trained sizes snapping fades.
     pub(crate) fn at(&self, ppem: f32) -> [f32; 2] {
-        let (size, next, share, strength) = self.scale.mix(ppem);
-        [0, 1].map(|axis| {
-            let plain = self.offset[axis] * ppem;
-            match (self.moves[axis].get(size), self.moves[axis].get(next)) {
-                (Some(a), Some(b)) => plain + (a + (b - a) * share) * strength,
-                _ => (plain * GRID + 0.5).floor() / GRID,
-            }
+        let fit = self.scale.fit(ppem);
+        [0, 1].map(|axis| match self.moves[axis].get(fit.size) {
+            Some(moved) => self.offset[axis] * fit.grid + moved * fit.strength,
+            None => (self.offset[axis] * ppem * GRID + 0.5).floor() / GRID,
         })
     }
 
@@ -119,7 +116,9 @@ mod tests {
                 "{ppem}: {at_x}, {at_y}"
             );
         }
-        assert!((origin.at(10.5)[1] - (2.6 + 0.4 + 2.86 + 1.14) / 2.0).abs() < 1e-5);
+        for (ppem, y) in [(10.4, 3.0), (10.5, 4.0), (11.4, 4.0), (11.6, 2.0)] {
+            assert!((origin.at(ppem)[1] - y).abs() < 1e-5, "between sizes it stands as at the nearer one");
+        }
         assert!((origin.at(100.0)[1] - 26.0).abs() < 1e-4, "snapping does not fade");
     }
 

@@ -95,16 +95,29 @@ impl Scale {
         usize::from(self.first_ppem) + size * usize::from(self.step)
     }
 
-    /// Weights `(size index, next, share of next, strength)` that stand for a size: between two trained sizes
-    /// their displacements are mixed, beyond the trained ones they fade.
-    pub(crate) fn mix(&self, ppem: f32) -> (usize, usize, f32, f32) {
+    /// The trained size that stands for a size. Between two of them it is the nearer one, whose pixel positions
+    /// stay as they are, so that edges are as crisp; beyond them displacements fade.
+    pub(crate) fn fit(&self, ppem: f32) -> Fit {
         let (first, last) = (f32::from(self.first_ppem), f32::from(self.last_ppem));
         let at = (ppem - first).clamp(0.0, last - first) / f32::from(self.step);
-        let size = at as usize;
+        let size = (at + 0.5) as usize;
+        let within = first <= ppem && ppem <= last;
+        let grid = if within { self.ppem_of(size) as f32 } else { ppem };
         let beyond =
             (first - ppem).max(0.0) / (first * FADE_SPAN) + (ppem - last).max(0.0) / (last * FADE_SPAN);
-        (size, (size + 1).min(self.sizes() - 1), at - size as f32, (1.0 - beyond).max(0.0))
+        Fit { size, grid, strength: (1.0 - beyond).max(0.0) }
     }
+}
+
+/// How a size is fitted to the pixel grid.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fit {
+    /// The trained size whose displacements count, by its index.
+    pub(crate) size: usize,
+    /// The size in pixels per em that they belong to.
+    pub(crate) grid: f32,
+    /// The share of the displacements.
+    pub(crate) strength: f32,
 }
 
 /// How many samples a pixel has along each axis: small sizes are supersampled.
@@ -274,12 +287,12 @@ impl GridFit {
 
     /// Hinted positions in pixels of an axis's knots, ascending.
     fn hinted_knots(&self, axis: usize, ppem: f32) -> impl Iterator<Item = f32> + '_ {
-        let (size, next, share, strength) = self.scale.mix(ppem);
-        let (knots, moves) = (&self.knots[axis], &self.moves[axis]);
+        let fit = self.scale.fit(ppem);
+        let knots = &self.knots[axis];
+        let moves = &self.moves[axis][fit.size * knots.len()..];
         let mut floor = f32::NEG_INFINITY;
-        knots.iter().enumerate().map(move |(k, knot)| {
-            let (a, b) = (moves[size * knots.len() + k], moves[next * knots.len() + k]);
-            let hinted = (knot * ppem + (a + (b - a) * share) * strength).max(floor);
+        knots.iter().zip(moves).map(move |(knot, moved)| {
+            let hinted = (knot * fit.grid + moved * fit.strength).max(floor);
             floor = hinted + MIN_KNOT_GAP;
             hinted
         })
@@ -386,13 +399,12 @@ impl GridFit {
 
     /// The deformation grid (em) at a size.
     fn mix_patterns(&self, ppem: f32, out: &mut Vec<f32>) {
-        let (size, next, share, strength) = self.scale.mix(ppem);
+        let fit = self.scale.fit(ppem);
         let nodes = DEFORM_NODES * DEFORM_NODES;
         out.clear();
         out.resize(nodes, 0.0);
         for r in 0..self.rank {
-            let (a, b) = (self.embedding[size * self.rank + r], self.embedding[next * self.rank + r]);
-            let weight = (a + (b - a) * share) * strength / ppem;
+            let weight = self.embedding[fit.size * self.rank + r] * fit.strength / fit.grid;
             for (sum, value) in out.iter_mut().zip(&self.patterns[r * nodes..(r + 1) * nodes]) {
                 *sum += value * weight;
             }

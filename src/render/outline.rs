@@ -28,6 +28,24 @@ impl Outline {
         self.map(|point| [point[0] + by[0], point[1] + by[1]]);
     }
 
+    /// The same commands with other coordinates, as many as `points` has.
+    pub fn with_points(&self, points: &[[f32; 2]]) -> Self {
+        let mut rest = points.iter();
+        let mut next = |p: &Vector| rest.next().map_or(*p, |p| Vector::from(*p));
+        let commands = self
+            .commands
+            .iter()
+            .map(|command| match command {
+                Command::MoveTo(p) => Command::MoveTo(next(p)),
+                Command::LineTo(p) => Command::LineTo(next(p)),
+                Command::QuadTo(c, p) => Command::QuadTo(next(c), next(p)),
+                Command::CurveTo(a, b, p) => Command::CurveTo(next(a), next(b), next(p)),
+                Command::Close => Command::Close,
+            })
+            .collect();
+        Self { commands, points: points.to_vec() }
+    }
+
     fn map(&mut self, to: impl Fn([f32; 2]) -> [f32; 2]) {
         for point in &mut self.points {
             *point = to(*point);

@@ -49,8 +49,14 @@ pub fn polish(weights: &mut Weights, lesson: &Lesson, scale: Scale, options: Pol
         return Ok(());
     }
     let model = GridFit::new(weights, scale)?;
-    let mut bench =
-        Bench { weights: std::mem::take(weights), model, judge: Judge::new(lesson), scale, options, round: 0 };
+    let mut bench = Bench {
+        weights: std::mem::take(weights),
+        model,
+        judge: Judge::new(lesson),
+        scale,
+        options,
+        round: 0,
+    };
     let result = (0..options.rounds).try_for_each(|round| {
         bench.round = round;
         bench.warp(0)?;
@@ -184,7 +190,8 @@ impl Bench<'_> {
             let reach = [node % DEFORM_NODES, node / DEFORM_NODES];
             let reach = [0, 1].map(|axis| self.model.node_reach(axis, reach[axis]));
             let embedding = &self.weights.embedding;
-            let regions = self.judge.around(&self.model, reach, self.round, |s| embedding[s * rank + r] != 0)?;
+            let regions =
+                self.judge.around(&self.model, reach, self.round, |s| embedding[s * rank + r] != 0)?;
             let put = |weights: &mut Weights, model: &mut GridFit, value: i32| {
                 weights.patterns[at] = value as i8;
                 model.set_pattern(at, value as i8);

@@ -98,7 +98,7 @@ fn an_outline_without_height_is_trained_too() {
     let hinted = |ppem: u16| {
         let points = outline.points.iter().map(|p| p.map(|v| v * f32::from(ppem))).collect();
         let placement = Placement { left: 0, top: 3, width: 4, height: 1 };
-        HintedGlyph { ppem, points, bitmap: Bitmap { placement, pixels: vec![0, 0, 9, 0] } }
+        HintedGlyph { ppem, points, bitmap: Bitmap { placement, pixels: vec![0, 0, 9, 0] }, predicted: false }
     };
     let sizes = vec![hinted(8), hinted(9)];
     let lesson = Lesson { gid: 1, outline: outline.clone(), complaint: None, sizes };
