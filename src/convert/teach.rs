@@ -31,6 +31,19 @@ pub struct HintedGlyph {
     pub predicted: bool,
 }
 
+impl Lesson {
+    /// The plain glyph at sizes beyond the hinted ones, where the model has to follow the outline.
+    pub(super) fn beyond(&self) -> Vec<HintedGlyph> {
+        let last = self.sizes.last().map_or(0, |size| size.ppem);
+        let plain = |ppem: u16| {
+            let points: Vec<_> = self.outline.points.iter().map(|p| p.map(|v| v * f32::from(ppem))).collect();
+            let bitmap = self.outline.with_points(&points).rasterize();
+            HintedGlyph { ppem, points, bitmap, predicted: false }
+        };
+        [last + last / 2, last * 2].map(plain).into()
+    }
+}
+
 /// Draws the lesson of one glyph.
 ///
 /// # Errors

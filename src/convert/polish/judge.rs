@@ -1,6 +1,6 @@
 //! The error of a model under work against its lesson, over the pixels that a change can reach.
 
-use crate::convert::teach::Lesson;
+use crate::convert::teach::{HintedGlyph, Lesson};
 use crate::error::Error;
 use crate::model::gridfit::{GridFit, SLOPE_REACH, Scratch};
 use crate::render::{Bitmap, Placement};
@@ -21,19 +21,21 @@ pub(super) enum Regions {
     Parts(Vec<(usize, Placement)>, f64),
 }
 
-pub(super) struct Judge<'a> {
-    lesson: &'a Lesson,
+pub(super) struct Judge {
+    /// The hinted sizes, then some plain ones.
+    sizes: Vec<HintedGlyph>,
     scratch: Scratch,
     pixels: Vec<u8>,
 }
 
-impl<'a> Judge<'a> {
-    pub(super) fn new(lesson: &'a Lesson) -> Self {
-        Self { lesson, scratch: Scratch::default(), pixels: Vec::new() }
+impl Judge {
+    pub(super) fn new(lesson: &Lesson) -> Self {
+        let sizes = lesson.sizes.iter().cloned().chain(lesson.beyond()).collect();
+        Self { sizes, scratch: Scratch::default(), pixels: Vec::new() }
     }
 
     fn ppem(&self, size: usize) -> f32 {
-        f32::from(self.lesson.sizes[size].ppem)
+        f32::from(self.sizes[size].ppem)
     }
 
     /// What hinted positions between `low` and `high` (pixels) along an axis can change at one size.
@@ -59,8 +61,8 @@ impl<'a> Judge<'a> {
         round: usize,
         counts: impl Fn(usize) -> bool,
     ) -> Result<Regions, Error> {
-        let mut parts = Vec::with_capacity(self.lesson.sizes.len());
-        for size in (round % SHARES..self.lesson.sizes.len()).step_by(SHARES).filter(|size| counts(*size)) {
+        let mut parts = Vec::with_capacity(self.sizes.len());
+        for size in (round % SHARES..self.sizes.len()).step_by(SHARES).filter(|size| counts(*size)) {
             let ppem = self.ppem(size);
             let mut part = model.placement(ppem)?;
             for (axis, [low, high]) in reach.into_iter().enumerate() {
@@ -80,7 +82,7 @@ impl<'a> Judge<'a> {
             Regions::Whole(size) => {
                 let place = model.placement(self.ppem(*size))?;
                 let within = self.part(model, *size, place);
-                Ok((within + outside(&self.lesson.sizes[*size].bitmap, place)) * self.weight(*size))
+                Ok((within + outside(&self.sizes[*size].bitmap, place)) * self.weight(*size))
             }
             Regions::Parts(parts, count) => {
                 let mut sum = 0.0;
@@ -104,7 +106,7 @@ impl<'a> Judge<'a> {
         self.pixels.clear();
         self.pixels.resize(part.area(), 0);
         model.draw(self.ppem(size), part, &mut self.scratch, &mut self.pixels);
-        let truth = &self.lesson.sizes[size].bitmap;
+        let truth = &self.sizes[size].bitmap;
         let width = part.width as usize;
         let rows = self.pixels.chunks_exact(width.max(1)).zip(0..);
         let sum: u32 = rows.map(|(row, j)| row_error(row, truth, part.left, part.top - 1 - j)).sum();

@@ -70,16 +70,16 @@ pub fn polish(weights: &mut Weights, lesson: &Lesson, scale: Scale, options: Pol
 }
 
 /// The glyph under work: its weights as they are stored and as they are drawn, always the same ones.
-struct Bench<'a> {
+struct Bench {
     weights: Weights,
     model: GridFit,
-    judge: Judge<'a>,
+    judge: Judge,
     scale: Scale,
     options: Polish,
     round: usize,
 }
 
-impl Bench<'_> {
+impl Bench {
     /// Gives a number, `now`, the best of the values in `tries` and of those beyond a better one. `put` stores a
     /// value, `bits` tells what the weights cost as far as they depend on it.
     fn settle(
@@ -190,8 +190,9 @@ impl Bench<'_> {
             let reach = [node % DEFORM_NODES, node / DEFORM_NODES];
             let reach = [0, 1].map(|axis| self.model.node_reach(axis, reach[axis]));
             let embedding = &self.weights.embedding;
-            let regions =
-                self.judge.around(&self.model, reach, self.round, |s| embedding[s * rank + r] != 0)?;
+            let regions = self.judge.around(&self.model, reach, self.round, |s| {
+                embedding.get(s * rank + r).is_some_and(|weight| *weight != 0)
+            })?;
             let put = |weights: &mut Weights, model: &mut GridFit, value: i32| {
                 weights.patterns[at] = value as i8;
                 model.set_pattern(at, value as i8);

@@ -8,12 +8,14 @@ use burn::tensor::{Device, Int, Tensor, TensorData};
 use crate::convert::start::Draft;
 use crate::convert::teach::{HintedGlyph, Lesson};
 use crate::error::Error;
-use crate::model::gridfit::{DEFORM_NODES, GridAxis, GridFit, SLOPE_REACH, Scale, samples_per_pixel};
+use crate::model::gridfit::{DEFORM_NODES, GridAxis, GridFit, SLOPE_REACH, samples_per_pixel};
 use crate::render::Placement;
 
 /// Groups that the sizes are dealt into, each one a spread over the whole range.
 pub(super) const GROUPS: usize = 8;
 
+/// A size for lines that only fill up a tensor.
+const PADDING_PPEM: f32 = 1.0;
 /// Pixels around the model's box that are trained too.
 const BORDER: u32 = 1;
 
@@ -150,28 +152,27 @@ struct Pixel {
 impl Group {
     /// The tensors of group `group` of a chunk's lessons.
     pub(super) fn new(
-        lessons: &[&Lesson],
+        lessons: &[Lesson],
         drafts: &[Draft],
-        scale: Scale,
+        models: &[GridFit],
+        units: f32,
         extent: Extent,
         group: usize,
         device: &Device,
     ) -> Result<Self, Error> {
-        let units = f32::from(scale.units_per_em);
         let mut lines = [vec![Vec::new(); lessons.len()], vec![Vec::new(); lessons.len()]];
         let mut pixels: Vec<Pixel> = Vec::new();
-        for (glyph, (lesson, draft)) in lessons.iter().zip(drafts).enumerate() {
-            let model = GridFit::new(&draft.quantise(), scale)?;
+        for (glyph, (lesson, model)) in lessons.iter().zip(models).enumerate() {
             for (size, hinted) in lesson.sizes.iter().enumerate().skip(group).step_by(GROUPS) {
                 let ppem = f32::from(hinted.ppem);
                 let place = widened(model.placement(ppem)?);
                 let n = samples_per_pixel(ppem);
                 let (first_column, first_row) = (lines[0][glyph].len(), lines[1][glyph].len());
                 for i in 0..place.width as usize * n {
-                    lines[0][glyph].push((size, place.left as f32 + (i as f32 + 0.5) / n as f32));
+                    lines[0][glyph].push((size, ppem, place.left as f32 + (i as f32 + 0.5) / n as f32));
                 }
                 for j in 0..place.height as usize * n {
-                    lines[1][glyph].push((size, place.top as f32 - (j as f32 + 0.5) / n as f32));
+                    lines[1][glyph].push((size, ppem, place.top as f32 - (j as f32 + 0.5) / n as f32));
                 }
                 for (i, j, target) in near_edges(hinted, place) {
                     let (column, row) = (first_column + i * n, first_row + j * n);
@@ -196,9 +197,9 @@ impl Group {
             let mut lists = LineLists::default();
             for (glyph, draft) in drafts.iter().enumerate() {
                 for k in 0..count {
-                    let padding = (0, 0.0);
-                    let (size, at) = lines[axis][glyph].get(k).copied().unwrap_or(padding);
-                    lists.push(axis, glyph, draft, scale, extent, size, at, grids[glyph][axis]);
+                    let padding = (0, PADDING_PPEM, 0.0);
+                    let line = lines[axis][glyph].get(k).copied().unwrap_or(padding);
+                    lists.push(axis, glyph, draft, units, extent, line, grids[glyph][axis]);
                 }
             }
             lists.tensors(count, extent.knots[axis], device)
@@ -216,13 +217,11 @@ impl LineLists {
         axis: usize,
         glyph: usize,
         draft: &Draft,
-        scale: Scale,
+        units: f32,
         extent: Extent,
-        size: usize,
-        at: f32,
+        (size, ppem, at): (usize, f32, f32),
         grid: GridAxis,
     ) {
-        let ppem = scale.ppem_of(size) as f32;
         let n = samples_per_pixel(ppem) as f32;
         self.at.push(at);
         self.reach.push(SLOPE_REACH / n);
@@ -231,7 +230,7 @@ impl LineLists {
         self.size.push((glyph * extent.sizes + size) as i32);
         let own = &draft.knots[axis];
         let last = own.len().saturating_sub(1);
-        let em = |k: usize| own.get(k).map_or(0.0, |v| f32::from(*v) / f32::from(scale.units_per_em));
+        let em = |k: usize| own.get(k).map_or(0.0, |v| f32::from(*v) / units);
         let base = (glyph * extent.sizes + size) * extent.knots[axis];
         for k in 0..extent.knots[axis] {
             self.knots.push(em(k.min(last)));

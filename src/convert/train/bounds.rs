@@ -43,10 +43,11 @@ pub(super) fn within(hinted: [Tensor<1>; 2], low: [Tensor<1>; 2], high: [Tensor<
 }
 
 /// Bounds of the hinted positions: the knots, the outermost of which make the bitmap's box, stay within the
-/// teacher's.
+/// teacher's. Beyond the first `hinted` sizes they stay where they are.
 pub(super) fn box_bounds(
-    lessons: &[&Lesson],
+    lessons: &[Lesson],
     drafts: &[Draft],
+    hinted: usize,
     extent: Extent,
     device: &Device,
 ) -> [[Tensor<1>; 2]; 2] {
@@ -70,7 +71,8 @@ pub(super) fn box_bounds(
                         }
                     };
                     let knots = draft.knots[axis].len();
-                    (0..lesson.sizes.len()).flat_map(|size| std::iter::repeat_n(at(size), knots)).collect()
+                    let within = (0..hinted).flat_map(|size| std::iter::repeat_n(at(size), knots));
+                    within.chain(draft.hinted[axis][hinted * knots..].iter().copied()).collect()
                 })
             })
             .collect();

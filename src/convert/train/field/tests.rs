@@ -1,10 +1,11 @@
+use super::super::beyond;
 use super::*;
 use crate::convert::samples::lessons;
 use crate::convert::start::Capacity;
 use crate::convert::teach::Lesson;
 use crate::convert::train::batch::GROUPS;
 use crate::model::Target;
-use crate::model::gridfit::{GridFit, Scale, Scratch};
+use crate::model::gridfit::{GridFit, Scratch};
 use crate::render::{Bitmap, Placement};
 
 /// The renderer rounds to whole levels: half of one.
@@ -13,8 +14,7 @@ const ROUNDING: f32 = 0.5 / 255.0;
 const PRECISION: f32 = 1e-3;
 
 /// A lesson that shows what a model draws, border included, instead of what the teacher draws.
-fn own_lesson(lesson: &Lesson, draft: &Draft, scale: Scale) -> Lesson {
-    let model = GridFit::new(&draft.quantise(), scale).unwrap();
+fn own_lesson(lesson: &Lesson, model: &GridFit) -> Lesson {
     let mut lesson = lesson.clone();
     for hinted in &mut lesson.sizes {
         let ppem = f32::from(hinted.ppem);
@@ -43,13 +43,17 @@ fn largest_difference(text: &str, target: Target) -> (f32, usize) {
     let mut drafts: Vec<Draft> =
         lessons.iter().map(|l| Draft::from_lesson(l, scale, target, Capacity::default(), 1)).collect();
     drafts.iter_mut().for_each(shake);
-    let lessons: Vec<Lesson> = lessons.iter().zip(&drafts).map(|(l, d)| own_lesson(l, d, scale)).collect();
-    let lessons: Vec<&Lesson> = lessons.iter().collect();
-    let extent = Extent::of(&drafts, scale.sizes());
+    let models: Vec<GridFit> = drafts.iter().map(|d| GridFit::new(&d.quantise(), scale).unwrap()).collect();
+    let units = f32::from(scale.units_per_em);
+    let (lessons, drafts): (Vec<Lesson>, Vec<Draft>) =
+        lessons.iter().zip(&drafts).map(|(l, d)| beyond(l, d, units)).unzip();
+    let lessons: Vec<Lesson> = lessons.iter().zip(&models).map(|(l, m)| own_lesson(l, m)).collect();
+    let extent = Extent::of(&drafts, lessons[0].sizes.len());
+    assert!(extent.sizes > scale.sizes(), "plain sizes are evaluated, too");
     let weights = Parameters::from_drafts(&drafts, extent, &device).rounded().ordered(extent);
     let (mut largest, mut pixels) = (0.0f32, 0);
     for k in 0..GROUPS {
-        let group = Group::new(&lessons, &drafts, scale, extent, k, &device).unwrap();
+        let group = Group::new(&lessons, &drafts, &models, units, extent, k, &device).unwrap();
         let basis = column_basis(&group.columns, &weights.hinted[0], extent);
         let columns = contract(&basis, &group.columns, &weights, extent);
         let coverage = draw(&columns, &group.rows, &weights.hinted[1], &group.samples).coverage;
