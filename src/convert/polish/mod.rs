@@ -25,7 +25,7 @@ pub struct Polish {
 
 impl Default for Polish {
     fn default() -> Self {
-        Self { rounds: 4, bit_worth: 0.006 }
+        Self { rounds: 3, bit_worth: 0.006 }
     }
 }
 
@@ -96,6 +96,10 @@ impl Bench {
         let mut k = 0;
         while let Some(&value) = tries.get(k) {
             k += 1;
+            // Where one direction is better the other is not.
+            if (value - now).signum() * (chosen - now).signum() < 0 {
+                continue;
+            }
             put(&mut self.weights, &mut self.model, value);
             let price = worth * bits(&self.weights);
             let total = self.judge.error(&self.model, regions, least - price)? + price;
