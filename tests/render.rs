@@ -149,12 +149,12 @@ fn ink(bitmap: &Bitmap) -> f32 {
     bitmap.pixels.iter().map(|p| f32::from(*p)).sum::<f32>() / 255.0
 }
 
-/// A size between two others may have this much less or more ink than either, as a share: it has the rows of the
-/// nearer one and columns of its own, and stems of the other may be a pixel thicker.
+/// A fractional size may have this much less or more ink than the whole ones around it, as a share: it has the rows
+/// of the nearer one and columns of its own, and stems of the other may be a pixel thicker.
 const BETWEEN: f32 = 0.05;
 
 #[test]
-fn a_size_between_two_trained_ones_lies_between_them() {
+fn a_fractional_size_lies_between_the_whole_ones() {
     let font = neural();
     for gid in letters() {
         let glyph = font.glyph(gid).unwrap();
@@ -184,12 +184,12 @@ fn grey(bitmap: &Bitmap) -> f32 {
     grey as f32 / bitmap.pixels.len() as f32
 }
 
-/// A size between two trained ones may have this much more grey than the nearer one: its columns lie elsewhere.
+/// A fractional size may have this much more grey than the nearest whole one: its columns lie elsewhere.
 /// Mixing the moves of two sizes would make 0.02 more (spec/experiments.md).
 const GREYER: f32 = 0.01;
 
 #[test]
-fn a_size_between_two_trained_ones_is_as_crisp_in_y() {
+fn a_fractional_size_is_as_crisp_in_y() {
     // Horizontal edges that hinting puts between two rows must not become soft at 12.3 or 12.7 ppem.
     let font = neural();
     let sizes = (9u8..=24).map(f32::from);

@@ -9,9 +9,7 @@ use std::sync::LazyLock;
 use nfr::model::compose::{Composed, Part};
 use nfr::model::gridfit::{AxisWarp, DEFORM_NODES, Scale, Weights};
 use nfr::table::codec::{MAX_CELLS, MAX_KNOTS, MAX_RANK, decode, encode};
-use nfr::table::{
-    self, GlyphModel, Header, MAX_PARTS, MAX_PPEM_STEP, MAX_TRAINED_PPEM, PartsDecoder, TAG, Table,
-};
+use nfr::table::{self, GlyphModel, Header, MAX_PARTS, MAX_TRAINED_PPEM, PartsDecoder, TAG, Table};
 use nfr::{Error, Font, Rasterizer, Target};
 use proptest::collection::{btree_set, vec};
 use proptest::prelude::*;
@@ -65,15 +63,11 @@ fn weights(sizes: usize) -> impl Strategy<Value = Weights> {
 }
 
 fn scale() -> impl Strategy<Value = Scale> {
-    let last_size = MAX_TRAINED_PPEM;
-    (16u16..=16384, 1..=last_size, 0u16..40, 1u16..=MAX_PPEM_STEP).prop_map(
-        move |(units_per_em, first_ppem, more, step)| Scale {
-            units_per_em,
-            first_ppem,
-            last_ppem: first_ppem + more.min((last_size - first_ppem) / step) * step,
-            step,
-        },
-    )
+    (16u16..=16384, 1..=MAX_TRAINED_PPEM, 0u16..40).prop_map(|(units_per_em, first_ppem, more)| Scale {
+        units_per_em,
+        first_ppem,
+        last_ppem: (first_ppem + more).min(MAX_TRAINED_PPEM),
+    })
 }
 
 fn scale_and<T: std::fmt::Debug, S: Strategy<Value = T>>(
@@ -83,12 +77,7 @@ fn scale_and<T: std::fmt::Debug, S: Strategy<Value = T>>(
 }
 
 fn header(scale: Scale) -> Header {
-    Header {
-        first_ppem: scale.first_ppem,
-        last_ppem: scale.last_ppem,
-        skipped: (scale.step - 1) as u8,
-        ..Header::default()
-    }
+    Header { first_ppem: scale.first_ppem, last_ppem: scale.last_ppem, ..Header::default() }
 }
 
 proptest! {
@@ -197,8 +186,29 @@ proptest! {
 }
 
 #[test]
+fn reserved_bytes_are_written_as_0_and_not_read() {
+    const RESERVED_AT: usize = 38;
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 11 };
+    let (mut bytes, _) = table::write(&header(scale), &[], &[], scale).unwrap();
+    let reserved = &mut bytes[RESERVED_AT..][..2];
+    assert_eq!(reserved, [0, 0]);
+    reserved.fill(7);
+    assert_eq!(Table::parse(&bytes).unwrap().header(), &header(scale));
+}
+
+#[test]
+fn sizes_that_make_no_range_are_malformed() {
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 11 };
+    for (first_ppem, last_ppem) in [(0, 11), (12, 11), (8, MAX_TRAINED_PPEM + 1)] {
+        let header = Header { first_ppem, last_ppem, ..header(scale) };
+        let (bytes, _) = table::write(&header, &[], &[], scale).unwrap();
+        assert!(matches!(Table::parse(&bytes), Err(Error::Malformed(_))), "{first_ppem}–{last_ppem}");
+    }
+}
+
+#[test]
 fn parts_that_readers_would_refuse_are_not_written() {
-    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10, step: 1 };
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10 };
     let models = [GlyphModel { gid: 1, weights: Weights::default() }];
     let write = |part: Part, count: usize| {
         table::write(&header(scale), &models, &[Composed { gid: 5, parts: vec![part; count] }], scale)
@@ -214,7 +224,7 @@ fn parts_that_readers_would_refuse_are_not_written() {
 
 #[test]
 fn a_part_without_a_model_or_places_is_malformed() {
-    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10, step: 1 };
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10 };
     let models = [GlyphModel { gid: 1, weights: Weights::default() }];
     let part = Part { gid: 1, ..Part::default() };
     let composed = [Composed { gid: 5, parts: vec![part] }];
@@ -235,7 +245,7 @@ fn a_part_without_a_model_or_places_is_malformed() {
 
 #[test]
 fn a_model_that_readers_would_refuse_is_not_written() {
-    let scale = Scale { units_per_em: 1000, first_ppem: 1, last_ppem: MAX_TRAINED_PPEM, step: 1 };
+    let scale = Scale { units_per_em: 1000, first_ppem: 1, last_ppem: MAX_TRAINED_PPEM };
     let knots: Vec<i16> = (0..i16::from(MAX_KNOTS)).collect();
     let hinted = |value: i32| vec![value; knots.len() * scale.sizes()];
     let fits = Weights {
@@ -262,7 +272,7 @@ fn a_model_that_readers_would_refuse_is_not_written() {
 
 #[test]
 fn the_example_of_the_specification_is_packed_as_it_says() {
-    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10, step: 1 };
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10 };
     let weights = Weights {
         bounds: [0, -20, 300, 700],
         cells: [10, 10],

@@ -245,7 +245,7 @@ fn compare(weights: &Weights, scale: Scale, ppem: f32, what: &str) {
 fn compare_font(name: &str, target: Target, sizes: &[f32]) {
     let data = font(name);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
-    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 40, step: 1 };
+    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 40 };
     let hinted: Vec<_> = (scale.first_ppem..=scale.last_ppem).map(|s| teacher.at(s).unwrap()).collect();
     for character in ascii().chars() {
         let lesson = lesson(&teacher, &hinted, gid(&data, character)).unwrap();

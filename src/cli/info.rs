@@ -26,7 +26,6 @@ struct Info {
     target: &'static str,
     first_ppem: u16,
     last_ppem: u16,
-    ppem_step: u16,
     glyphs_with_models: usize,
     glyphs: u32,
     table_bytes: usize,
@@ -52,7 +51,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         target: font.target().name(),
         first_ppem,
         last_ppem,
-        ppem_step: font.ppem_step(),
         glyphs_with_models,
         glyphs: glyph_count(&file)?,
         table_bytes: font.table_len(),
@@ -69,8 +67,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     writeln!(out, "table version   {}", info.version)?;
     writeln!(out, "target          {}", info.target)?;
-    let step = if info.ppem_step == 1 { String::new() } else { format!(":{}", info.ppem_step) };
-    writeln!(out, "sizes           {first_ppem}-{last_ppem}{step} ppem")?;
+    writeln!(out, "sizes           {first_ppem}-{last_ppem} ppem")?;
     writeln!(out, "glyphs          {} of {} have models", info.glyphs_with_models, info.glyphs)?;
     writeln!(out, "table           {} bytes, {:.1} per glyph", info.table_bytes, info.bytes_per_glyph)?;
     writeln!(out, "file            {} bytes", info.file_bytes)?;

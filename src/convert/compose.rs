@@ -14,7 +14,7 @@ use super::predict::Predictor;
 use super::teacher::{Teacher, TeacherAt};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
-use crate::model::compose::{Composed, Origin, Part, snapped};
+use crate::model::compose::{Composed, Part, snapped, unsnapped};
 use crate::model::gridfit::Scale;
 use crate::render::outline::Outline;
 use crate::render::{Bitmap, sum};
@@ -46,7 +46,7 @@ impl Plan {
         Self { models: gids.to_vec(), composed: Vec::new() }
     }
 
-    /// Finds the glyphs among `gids` that others make up.
+    /// Finds the glyphs among `gids` that others make up, and their places at the `sizes` that the teacher shows.
     ///
     /// # Errors
     ///
@@ -58,7 +58,9 @@ impl Plan {
         scale: Scale,
         gids: &[u16],
     ) -> Result<Self, Error> {
-        let mut fitter = Fitter { teacher, sizes, scale, shapes: HashMap::new(), snaps: BTreeSet::new() };
+        let ppem = sizes.iter().map(|at| at.ppem().into()).collect();
+        let mut fitter =
+            Fitter { teacher, sizes, ppem, scale, shapes: HashMap::new(), snaps: BTreeSet::new() };
         let mut twins = Twins::default();
         let mut fitting: BTreeMap<u16, Vec<Part>> = BTreeMap::new();
         let mut composites = Vec::new();
@@ -82,20 +84,20 @@ impl Plan {
         Ok(Self::of_parts(gids, fitting))
     }
 
-    /// Gives parts that stand on whole pixels their places at the sizes of `scale` that were not `shown`.
-    pub(super) fn complete(&mut self, predictor: &Predictor, scale: Scale, shown: Scale) {
+    /// Gives parts that stand on whole pixels their places at all sizes of `scale`.
+    pub(super) fn complete(&mut self, predictor: &Predictor, scale: Scale) {
         for part in self.composed.iter_mut().flat_map(|glyph| &mut glyph.parts) {
             for (axis, (offset, snaps)) in part.offset.iter().zip(&mut part.snaps).enumerate() {
                 if !snaps.is_empty() {
-                    let near = |scale: Scale, size| {
-                        f64::from(snapped(*offset, scale.ppem_of(size), scale.units_per_em))
-                    };
+                    let near = |ppem: usize| f64::from(snapped(*offset, ppem, scale.units_per_em));
+                    let known = predictor.known().iter().zip(&*snaps);
                     let places: Vec<f64> =
-                        snaps.iter().enumerate().map(|(k, snap)| near(shown, k) + f64::from(*snap)).collect();
+                        known.map(|(ppem, snap)| near((*ppem).into()) + f64::from(*snap)).collect();
                     let em = f64::from(*offset) / f64::from(scale.units_per_em);
                     let places = predictor.places(axis, em, &places);
                     // Casting clamps, and so far nothing snaps.
-                    *snaps = places.iter().enumerate().map(|(k, at)| (at - near(scale, k)) as i8).collect();
+                    let snap = |(size, place): (usize, &f64)| (place - near(scale.ppem_of(size))) as i8;
+                    *snaps = places.iter().enumerate().map(snap).collect();
                 }
             }
         }
@@ -199,6 +201,9 @@ struct Shape {
 struct Fitter<'t, 'a> {
     teacher: &'t Teacher<'a>,
     sizes: &'t [TeacherAt<'t, 'a>],
+    /// Those sizes in pixels per em.
+    ppem: Vec<usize>,
+    /// The sizes that the table will have.
     scale: Scale,
     /// Of the glyphs that have been tried as parts.
     shapes: HashMap<u16, Rc<Shape>>,
@@ -228,11 +233,13 @@ impl Fitter<'_, '_> {
         let mut parts = Vec::with_capacity(leaves.len());
         let mut at = 0;
         for (leaf, shape) in leaves.iter().zip(&shapes) {
-            let Some(part) = fit_part(&whole, at, *leaf, shape, self.scale) else { return Ok(None) };
+            let Some(part) = fit_part(&whole, at, *leaf, shape, &self.ppem, self.scale.units_per_em) else {
+                return Ok(None);
+            };
             parts.push(part);
             at += shape.plain.points.len();
         }
-        if at != whole.plain.points.len() || self.sum_error(&whole, &shapes, &parts)? > MAX_SUM_ERROR {
+        if at != whole.plain.points.len() || self.sum_error(&whole, &shapes, &parts) > MAX_SUM_ERROR {
             return Ok(None);
         }
         let lists = parts.iter().flat_map(|part| &part.snaps).filter(|snaps| !snaps.is_empty());
@@ -246,27 +253,42 @@ impl Fitter<'_, '_> {
     }
 
     /// How far the sum of the parts' exact bitmaps is from the glyph's (mae).
-    fn sum_error(&self, whole: &Shape, shapes: &[Rc<Shape>], parts: &[Part]) -> Result<f64, Error> {
-        let origins =
-            parts.iter().map(|part| Origin::new(part, self.scale)).collect::<Result<Vec<_>, _>>()?;
+    fn sum_error(&self, whole: &Shape, shapes: &[Rc<Shape>], parts: &[Part]) -> f64 {
         let mut sums = Sums::default();
-        for (size, hinted) in whole.hinted.iter().enumerate() {
-            let ppem = self.scale.ppem_of(size) as f32;
-            let moved = shapes.iter().zip(&origins).map(|(shape, origin)| {
+        for (size, (hinted, ppem)) in whole.hinted.iter().zip(&self.ppem).enumerate() {
+            let moved = shapes.iter().zip(parts).map(|(shape, part)| {
                 let mut outline = shape.hinted[size].clone();
-                outline.translate(origin.at(ppem));
+                outline.translate(place(part, size, *ppem, self.scale.units_per_em));
                 outline.rasterize()
             });
             sums.add(&hinted.rasterize(), &sum(&moved.collect::<Vec<Bitmap>>()));
         }
-        Ok(sums.mae())
+        sums.mae()
     }
 }
 
-/// Where `shape` stands in a glyph, whose points from `at` on are to be its own.
-fn fit_part(whole: &Shape, at: usize, leaf: u16, shape: &Shape, scale: Scale) -> Option<Part> {
+/// Where a part stands (pixels) at a size of which it has a snap, by its index.
+fn place(part: &Part, size: usize, ppem: usize, units_per_em: u16) -> [f32; 2] {
+    [0, 1].map(|axis| {
+        let offset = part.offset[axis];
+        match part.snaps[axis].get(size) {
+            Some(snap) => (snapped(offset, ppem, units_per_em) + i32::from(*snap)) as f32,
+            None => unsnapped(f32::from(offset) / f32::from(units_per_em), ppem as f32),
+        }
+    })
+}
+
+/// Where `shape` stands in a glyph, whose points from `at` on are to be its own. Both are hinted at the sizes `ppem`.
+fn fit_part(
+    whole: &Shape,
+    at: usize,
+    leaf: u16,
+    shape: &Shape,
+    ppem: &[usize],
+    units_per_em: u16,
+) -> Option<Part> {
     let count = shape.plain.points.len();
-    let units = f32::from(scale.units_per_em);
+    let units = f32::from(units_per_em);
     let mut part = Part { gid: leaf, ..Part::default() };
     for axis in 0..2 {
         // Half the spread of the differences, and their middle.
@@ -291,32 +313,30 @@ fn fit_part(whole: &Shape, at: usize, leaf: u16, shape: &Shape, scale: Scale) ->
             }
             places.push(place);
         }
-        part.snaps[axis] = fit_places(&places, part.offset[axis], scale)?;
+        part.snaps[axis] = fit_places(&places, part.offset[axis], ppem, units_per_em)?;
     }
     Some(part)
 }
 
-/// Says how the places of a part (pixels, by size) come from its offset: by nothing, or by snapping.
-fn fit_places(places: &[f32], offset: i16, scale: Scale) -> Option<Vec<i8>> {
-    let em = f32::from(offset) / f32::from(scale.units_per_em);
-    let plain = |size: usize| em * scale.ppem_of(size) as f32;
-    if places.iter().enumerate().all(|(size, place)| (place - plain(size)).abs() <= MAX_POINT_ERROR) {
+/// Says how the places of a part (pixels, at the sizes `ppem`) come from its offset: by nothing, or by snapping.
+fn fit_places(places: &[f32], offset: i16, ppem: &[usize], units_per_em: u16) -> Option<Vec<i8>> {
+    let em = f32::from(offset) / f32::from(units_per_em);
+    let mut placed = places.iter().zip(ppem);
+    if placed.all(|(place, ppem)| (place - em * *ppem as f32).abs() <= MAX_POINT_ERROR) {
         return Some(Vec::new());
     }
-    let snap = |(size, place): (usize, &f32)| {
+    let snap = |(place, ppem): (&f32, &usize)| {
         let pixel = place.round();
-        let near = snapped(offset, scale.ppem_of(size), scale.units_per_em);
+        let near = snapped(offset, *ppem, units_per_em);
         let off = i8::try_from(pixel as i32 - near).ok()?;
         ((place - pixel).abs() <= MAX_POINT_ERROR).then_some(off)
     };
-    places.iter().enumerate().map(snap).collect()
+    places.iter().zip(ppem).map(snap).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 10, last_ppem: 12, step: 1 };
 
     fn plan(gids: &[u16], fitting: &[(u16, &[u16])]) -> (Vec<u16>, Vec<u16>) {
         let part = |gid: &u16| Part { gid: *gid, ..Part::default() };
@@ -355,9 +375,10 @@ mod tests {
     #[test]
     fn a_place_that_is_neither_plain_nor_a_whole_pixel_does_not_fit() {
         // Plain: 0.123 em.
-        assert_eq!(fit_places(&[1.23, 1.353, 1.476], 123, SCALE), Some(vec![]));
-        assert_eq!(fit_places(&[1.0, 2.0, 1.0], 123, SCALE), Some(vec![0, 1, 0]));
-        assert_eq!(fit_places(&[1.0, 1.5, 1.0], 123, SCALE), None);
-        assert_eq!(fit_places(&[1.0, 200.0, 1.0], 123, SCALE), None);
+        let fit = |places: &[f32]| fit_places(places, 123, &[10, 11, 12], 1000);
+        assert_eq!(fit(&[1.23, 1.353, 1.476]), Some(vec![]));
+        assert_eq!(fit(&[1.0, 2.0, 1.0]), Some(vec![0, 1, 0]));
+        assert_eq!(fit(&[1.0, 1.5, 1.0]), None);
+        assert_eq!(fit(&[1.0, 200.0, 1.0]), None);
     }
 }

@@ -18,8 +18,7 @@ use super::train::{Backend, Schedule};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
 use crate::model::Target;
-use crate::model::gridfit::Scale;
-use crate::table::{self, GlyphModel, Header, MAX_PPEM_STEP, MAX_TRAINED_PPEM, Table};
+use crate::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM, Table};
 
 /// What a conversion is asked to do.
 #[derive(Debug, Clone)]
@@ -28,9 +27,9 @@ pub struct Options {
     pub index: u32,
     /// The glyphs to convert, in ascending order.
     pub gids: Vec<u16>,
-    /// The sizes to train on, in pixels per em.
+    /// The sizes of the models, in pixels per em, as far as the last that the teacher shows.
     pub ppem: RangeInclusive<u16>,
-    /// From one of them to the next. What hinting does at the sizes between is predicted from these.
+    /// From one size that the teacher shows to the next. What hinting does at the sizes between is predicted.
     pub ppem_step: u16,
     /// What the teacher hints for.
     pub target: Target,
@@ -164,19 +163,17 @@ pub fn resume(
     let teacher = Teacher::new(&font, options.target)?;
     let header = header(&font, options)?;
     let scale = header.scale(teacher.units_per_em());
-    let shown = Scale { step: options.ppem_step, ..scale };
-    let sizes = (0..shown.sizes())
-        .map(|size| teacher.at(shown.ppem_of(size) as u16))
-        .collect::<Result<Vec<_>, _>>()?;
+    let shown = options.ppem.clone().step_by(options.ppem_step.into());
+    let sizes = shown.map(|ppem| teacher.at(ppem)).collect::<Result<Vec<_>, _>>()?;
     warn_of_unhinted(&sizes, progress)?;
     let mut plan = if options.compose {
-        Plan::find(&font, &teacher, &sizes, shown, &options.gids)?
+        Plan::find(&font, &teacher, &sizes, scale, &options.gids)?
     } else {
         Plan::of_models(&options.gids)
     };
     progress.planned(plan.models.len() + plan.composed.len());
     let predictor = Predictor::new(&teacher, &sizes, scale, &plan.models)?;
-    plan.complete(&predictor, scale, shown);
+    plan.complete(&predictor, scale);
     let course =
         Course { teacher: &teacher, sizes: &sizes, scale, predictor: &predictor, options, progress, partial };
     let trained = course.train_all(&plan.models)?;
@@ -237,8 +234,8 @@ fn check(options: &Options) -> Result<(), Error> {
     if first == 0 || first > last || last > MAX_TRAINED_PPEM {
         return wrong(format!("sizes {first}–{last} ppem; use a range within 1–{MAX_TRAINED_PPEM}"));
     }
-    if !(1..=MAX_PPEM_STEP).contains(&options.ppem_step) {
-        return wrong(format!("{} ppem from size to size; use 1–{MAX_PPEM_STEP}", options.ppem_step));
+    if options.ppem_step == 0 {
+        return wrong("0 ppem from size to size; use 1 or more".into());
     }
     Ok(())
 }
@@ -249,7 +246,6 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
         target: options.target,
         first_ppem: first,
         last_ppem: last - (last - first) % options.ppem_step,
-        skipped: 0,
         outline_hash: outline_hash(font)?,
         outlines_dropped: options.drop_outlines,
         seed: options.seed,

@@ -20,5 +20,5 @@ pub(super) fn lessons(text: &str, target: Target) -> (Vec<Lesson>, Scale) {
     let gid = |c| font.cmap().unwrap().map_codepoint(c).unwrap().to_u32() as u16;
     let lessons = text.chars().map(|c| lesson(&teacher, &sizes, gid(c)).unwrap()).collect();
     let (first_ppem, last_ppem) = SIZES.into_inner();
-    (lessons, Scale { units_per_em: teacher.units_per_em(), first_ppem, last_ppem, step: 1 })
+    (lessons, Scale { units_per_em: teacher.units_per_em(), first_ppem, last_ppem })
 }

@@ -34,6 +34,11 @@ pub fn snapped(offset: i16, ppem: usize, units_per_em: u16) -> i32 {
     (2 * i64::from(offset) * ppem as i64 + units).div_euclid(2 * units) as i32
 }
 
+/// The place in pixels of what does not snap, at an offset in em.
+pub(crate) fn unsnapped(offset: f32, ppem: f32) -> f32 {
+    (offset * ppem * GRID + 0.5).floor() / GRID
+}
+
 /// Where a part stands, ready to evaluate.
 #[derive(Debug, Clone)]
 pub(crate) struct Origin {
@@ -80,7 +85,7 @@ impl Origin {
         let fit = self.scale.fit(ppem);
         [0, 1].map(|axis| match self.moves[axis].get(fit.size) {
             Some(moved) => self.offset[axis] * fit.grid + moved * fit.strength,
-            None => (self.offset[axis] * ppem * GRID + 0.5).floor() / GRID,
+            None => unsnapped(self.offset[axis], ppem),
         })
     }
 
@@ -96,7 +101,7 @@ mod tests {
 
     use super::*;
 
-    const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 10, last_ppem: 12, step: 1 };
+    const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 10, last_ppem: 12 };
 
     #[test]
     fn halves_snap_upwards() {

@@ -71,7 +71,7 @@ pub struct Weights {
     pub embedding: Vec<i8>,
 }
 
-/// What is the same for all glyphs of a font.
+/// What is the same for all glyphs of a font. Every whole size from the first to the last is a trained one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Scale {
     /// Font units in an em.
@@ -80,27 +80,24 @@ pub struct Scale {
     pub first_ppem: u16,
     /// The largest trained size.
     pub last_ppem: u16,
-    /// From one trained size to the next; at least 1, and a divisor of what lies between the ends.
-    pub step: u16,
 }
 
 impl Scale {
     /// The number of trained sizes.
     pub fn sizes(&self) -> usize {
-        usize::from((self.last_ppem - self.first_ppem) / self.step) + 1
+        usize::from(self.last_ppem - self.first_ppem) + 1
     }
 
     /// A trained size in pixels per em, by its index.
     pub fn ppem_of(&self, size: usize) -> usize {
-        usize::from(self.first_ppem) + size * usize::from(self.step)
+        usize::from(self.first_ppem) + size
     }
 
-    /// The trained size that stands for a size. Between two of them it is the nearer one, whose pixel positions
-    /// stay as they are, so that edges are as crisp; beyond them displacements fade.
+    /// The trained size that stands for a size: the nearest one, halves upwards. Its pixel positions stay as they
+    /// are, so that edges are as crisp; beyond the trained sizes displacements fade.
     pub(crate) fn fit(&self, ppem: f32) -> Fit {
         let (first, last) = (f32::from(self.first_ppem), f32::from(self.last_ppem));
-        let at = (ppem - first).clamp(0.0, last - first) / f32::from(self.step);
-        let size = (at + 0.5) as usize;
+        let size = ((ppem - first).clamp(0.0, last - first) + 0.5) as usize;
         let within = first <= ppem && ppem <= last;
         let grid = if within { self.ppem_of(size) as f32 } else { ppem };
         let beyond =

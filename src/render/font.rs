@@ -70,14 +70,9 @@ impl<'a> Font<'a> {
         self.header().target
     }
 
-    /// The sizes that the models were trained on, in pixels per em, both ends included.
+    /// The models were trained on every whole size from the first to the last of these, in pixels per em.
     pub fn ppem_range(&self) -> (u16, u16) {
         (self.scale.first_ppem, self.scale.last_ppem)
-    }
-
-    /// From one trained size to the next: 1 if none between the ends is left out.
-    pub fn ppem_step(&self) -> u16 {
-        self.scale.step
     }
 
     /// The length of the `Nfrt` table in bytes.

@@ -41,8 +41,6 @@ pub const MAX_PARTS: usize = 16;
 pub const MAX_SNAP_BYTES: usize = 1 << 20;
 /// The largest trained size, in pixels per em.
 pub const MAX_TRAINED_PPEM: u16 = 1024;
-/// The largest step between trained sizes: the table stores it less one, in a byte.
-pub const MAX_PPEM_STEP: u16 = 256;
 
 /// What a conversion was asked for, as the table records it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,8 +51,6 @@ pub struct Header {
     pub first_ppem: u16,
     /// The largest trained size.
     pub last_ppem: u16,
-    /// Sizes that are left out between one trained size and the next.
-    pub skipped: u8,
     /// FNV-1a of the outlines that the models were trained from.
     pub outline_hash: u64,
     /// Whether the font has no outlines of the glyphs that it has models for.
@@ -74,12 +70,7 @@ pub struct Header {
 impl Header {
     /// The trained sizes as models know them.
     pub fn scale(&self, units_per_em: u16) -> Scale {
-        Scale {
-            units_per_em,
-            first_ppem: self.first_ppem,
-            last_ppem: self.last_ppem,
-            step: u16::from(self.skipped) + 1,
-        }
+        Scale { units_per_em, first_ppem: self.first_ppem, last_ppem: self.last_ppem }
     }
 }
 

@@ -65,16 +65,14 @@ impl<'a> Table<'a> {
             knots: u8_at(34)?,
             rank: u8_at(35)?,
             cell: u16_at(36)?,
-            skipped: u8_at(38)?,
         };
         if header.first_ppem == 0
             || header.first_ppem > header.last_ppem
             || header.last_ppem > MAX_TRAINED_PPEM
-            || !(header.last_ppem - header.first_ppem).is_multiple_of(u16::from(header.skipped) + 1)
         {
             return Err(Error::Malformed(format!(
-                "table 'Nfrt' claims sizes {}–{} ppem with {} left out between each two; convert the font again",
-                header.first_ppem, header.last_ppem, header.skipped
+                "table 'Nfrt' claims sizes {}–{} ppem; convert the font again",
+                header.first_ppem, header.last_ppem
             )));
         }
         let count = usize::from(u16_at(10)?);

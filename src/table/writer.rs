@@ -85,7 +85,8 @@ fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, payload: usize)
     out.extend(header.steps.to_be_bytes());
     out.extend([header.knots, header.rank]);
     out.extend(header.cell.to_be_bytes());
-    out.extend([header.skipped, 0]);
+    // Reserved.
+    out.extend([0, 0]);
     debug_assert_eq!(out.len(), COUNTS_AT);
 }
 

@@ -83,6 +83,11 @@ impl Predictor {
         lesson.sizes.sort_by_key(|size| size.ppem);
     }
 
+    /// The sizes that are known.
+    pub(super) fn known(&self) -> &[u16] {
+        &self.known
+    }
+
     /// The places along an axis of a part that stands on whole pixels (pixels), at all sizes in order: `plain` is
     /// its offset in em, `places` are those at the known sizes.
     pub(super) fn places(&self, axis: usize, plain: f64, places: &[f64]) -> Vec<f64> {

@@ -125,7 +125,7 @@ fn errors(name: &str) -> [f64; 2] {
     let teacher = Teacher::new(&font, Target::Smooth).unwrap();
     let gid = |c: char| font.cmap().unwrap().map_codepoint(c).unwrap().to_u32() as u16;
     let gids: Vec<u16> = ('!'..='~').map(gid).collect();
-    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 64, step: 1 };
+    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 64 };
     // The predictor is given the teacher at even sizes and never hears of the others.
     let shown: Vec<_> = known().iter().map(|size| teacher.at(*size).unwrap()).collect();
     let predictor = Predictor::new(&teacher, &shown, scale, &gids).unwrap();

@@ -94,7 +94,7 @@ fn an_outline_without_height_is_trained_too() {
     outline.move_to(0.0, 0.25);
     outline.line_to(0.5, 0.25);
     outline.close();
-    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 9, step: 1 };
+    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 9 };
     let hinted = |ppem: u16| {
         let points = outline.points.iter().map(|p| p.map(|v| v * f32::from(ppem))).collect();
         let placement = Placement { left: 0, top: 3, width: 4, height: 1 };

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 11, step: 1 };
+const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 11 };
 
 /// A square of half an em, its knots hinted to whole pixels.
 fn square() -> Weights {
