@@ -69,7 +69,8 @@ pub struct Args {
     ///
     /// While it runs, a conversion keeps the glyphs that are ready in OUTPUT.partial. If it is interrupted, the
     /// same command with --resume trains only the others, and the font comes out the same. The input, the options
-    /// and the version have to be the same, but --jobs may change. The file is deleted in the end.
+    /// and the version have to be the same, but --jobs and --drop-outlines may change. The file is deleted in the
+    /// end.
     #[arg(long)]
     resume: bool,
     /// Write a report as JSON

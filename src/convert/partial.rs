@@ -32,9 +32,10 @@ pub struct Partial {
     found: HashMap<u16, Vec<u8>>,
 }
 
-/// Ties a file to what the result depends on: this version, the input and the options, but not the threads.
+/// Ties a file to what the models depend on: this version, the input and the options, but not the threads or what
+/// becomes of the outlines.
 fn key(input: &[u8], options: &Options) -> u64 {
-    let options = Options { jobs: 1, ..options.clone() };
+    let options = Options { jobs: 1, drop_outlines: false, ..options.clone() };
     let text = format!("{} {options:?}", env!("CARGO_PKG_VERSION"));
     fnv1a(fnv1a(FNV_BASIS, text.as_bytes()), input)
 }
