@@ -3,6 +3,7 @@
 use burn::tensor::{Device, Tensor, TensorData};
 
 use super::batch::{Extent, Group, Lines, Samples};
+use super::beyond::Learnt;
 use crate::convert::start::Draft;
 use crate::model::gridfit::{
     DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, MIN_GRADIENT, MIN_KNOT_GAP, MIN_SKEW, PATTERN_STEPS,
@@ -111,11 +112,17 @@ impl Parameters {
         }
     }
 
-    /// The weights as they would be stored, with the gradient of the unrounded ones (straight-through).
-    pub(super) fn rounded(&self) -> Self {
+    /// The weights as they would be stored, with the gradient of the unrounded ones (straight-through). What is not
+    /// learnt is not stored either.
+    pub(super) fn rounded(&self, learnt: &Learnt) -> Self {
+        let hinted = |axis: usize| {
+            let plain = &self.hinted[axis];
+            let moved = (straight_through(plain, WARP_STEPS) - plain.clone()).detach();
+            plain.clone() + moved * learnt.hinted[axis].clone()
+        };
         Self {
             field: straight_through(&self.field, FIELD_STEPS),
-            hinted: [0, 1].map(|k| straight_through(&self.hinted[k], WARP_STEPS)),
+            hinted: [0, 1].map(hinted),
             patterns: straight_through(&self.patterns, PATTERN_STEPS),
             embedding: straight_through(&self.embedding, EMBEDDING_STEPS),
         }

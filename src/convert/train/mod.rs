@@ -1,18 +1,20 @@
 //! Training: gradient descent on the bitmaps, with rounding in the loop for the last part.
 
 mod batch;
+mod beyond;
 mod bounds;
 mod field;
 mod smooth;
 
 use burn::optim::{Adam, AdamConfig, AdamState, Optimizer};
-use burn::tensor::{Device, Tensor, TensorData};
+use burn::tensor::{Device, Tensor};
 
 use crate::convert::start::Draft;
 use crate::convert::teach::Lesson;
 use crate::error::Error;
 use crate::model::gridfit::{GridFit, Scale};
 use batch::{Extent, GROUPS, Group};
+use beyond::{Learnt, extended};
 use bounds::{box_bounds, within};
 use field::{ColumnBasis, Parameters, column_basis, loss};
 use smooth::{roughness, squares};
@@ -104,11 +106,11 @@ pub fn train(
     let device = backend.device().autodiff();
     let models = drafts.iter().map(|d| GridFit::new(&d.quantise(), scale)).collect::<Result<Vec<_>, _>>()?;
     let units = f32::from(scale.units_per_em);
-    let (lessons, mut extended): (Vec<_>, Vec<_>) =
-        lessons.iter().zip(drafts.iter()).map(|(lesson, draft)| beyond(lesson, draft, units)).unzip();
-    let extent = Extent::of(&extended, lessons.first().map_or(0, |lesson| lesson.sizes.len()));
+    let (lessons, mut longer): (Vec<_>, Vec<_>) =
+        lessons.iter().zip(drafts.iter()).map(|(lesson, draft)| extended(lesson, draft, units)).unzip();
+    let extent = Extent::of(&longer, lessons.first().map_or(0, |lesson| lesson.sizes.len()));
     let mut groups = (0..GROUPS)
-        .map(|k| Group::new(&lessons, &extended, &models, units, extent, k, &device))
+        .map(|k| Group::new(&lessons, &longer, &models, units, extent, k, &device))
         .collect::<Result<Vec<_>, _>>()?;
     // With fewer sizes than groups some have nothing to teach.
     groups.retain(|group| !group.samples.runs.is_empty());
@@ -117,14 +119,14 @@ pub fn train(
     }
     // Coprime to the number of groups: all come by, and neighbouring sizes are not seen one after the other.
     let stride = if groups.len().is_multiple_of(3) { 1 } else { 3 };
-    let mut weights = Parameters::from_drafts(&extended, extent, &device);
+    let mut weights = Parameters::from_drafts(&longer, extent, &device);
     weights.field = weights.field.require_grad();
     weights.hinted = weights.hinted.map(Tensor::require_grad);
     weights.patterns = weights.patterns.require_grad();
     weights.embedding = weights.embedding.require_grad();
     let squares = squares(drafts, extent, &device);
-    let bounds = box_bounds(&lessons, &extended, scale.sizes(), extent, &device);
-    let fitted = fitted(scale.sizes(), extent, &device);
+    let bounds = box_bounds(&lessons, &longer, scale.sizes(), extent, &device);
+    let learnt = Learnt::new(scale.sizes(), extent, &device);
     // Columns that are not warped stay where they are.
     let still: Option<Vec<ColumnBasis>> = (extent.knots[0] == 0)
         .then(|| groups.iter().map(|g| column_basis(&g.columns, &weights.hinted[0], extent)).collect());
@@ -135,7 +137,8 @@ pub fn train(
         let done = step as f64 / schedule.steps as f64;
         let decay = FINAL_RATE + (1.0 - FINAL_RATE) * 0.5 * (1.0 + (std::f64::consts::PI * done).cos());
         let k = step * stride % groups.len();
-        let used = if done as f32 >= schedule.rounded_from { weights.rounded() } else { weights.clone() };
+        let used =
+            if done as f32 >= schedule.rounded_from { weights.rounded(&learnt) } else { weights.clone() };
         let used = used.ordered(extent);
         let pixels = groups[k].samples.target.dims()[0] as f64;
         let loss = loss(&groups[k], still.as_ref().map(|s| &s[k]), &used, extent)
@@ -153,37 +156,14 @@ pub fn train(
         weights.patterns = patterns.step(&adam, schedule.pattern_rate * decay, weights.patterns, gradient);
         let gradient = weights.embedding.grad_remove(&mut gradients);
         let stepped = embedding.step(&adam, schedule.embedding_rate * decay, weights.embedding, gradient);
-        weights.embedding = Tensor::from_inner(stepped.inner() * fitted.clone()).require_grad();
+        weights.embedding = Tensor::from_inner((stepped * learnt.embedding.clone()).inner()).require_grad();
     }
-    weights.store(&mut extended, extent);
-    for (draft, mut extended) in drafts.iter_mut().zip(extended) {
-        let sizes = scale.sizes();
-        (0..2).for_each(|axis| extended.hinted[axis].truncate(sizes * extended.knots[axis].len()));
-        extended.embedding.truncate(sizes * extended.rank);
-        *draft = extended;
+    weights.store(&mut longer, extent);
+    for (draft, mut longer) in drafts.iter_mut().zip(longer) {
+        beyond::cut(&mut longer, scale.sizes());
+        *draft = longer;
     }
     Ok(())
-}
-
-/// A lesson and a first guess with the plain glyph at larger sizes after the hinted ones. Nothing is moved there.
-fn beyond(lesson: &Lesson, draft: &Draft, units: f32) -> (Lesson, Draft) {
-    let (mut lesson, mut draft) = (lesson.clone(), draft.clone());
-    for plain in lesson.beyond() {
-        for (hinted, knots) in draft.hinted.iter_mut().zip(&draft.knots) {
-            hinted.extend(knots.iter().map(|knot| f32::from(*knot) / units * f32::from(plain.ppem)));
-        }
-        draft.embedding.resize(draft.embedding.len() + draft.rank, 0.0);
-        lesson.sizes.push(plain);
-    }
-    (lesson, draft)
-}
-
-/// 1 for each pattern at each of the first `hinted` sizes, 0 at the others: `[glyphs · sizes, rank]`.
-fn fitted(hinted: usize, extent: Extent, device: &Device) -> Tensor<2> {
-    let of = |at: usize| if at / extent.rank.max(1) % extent.sizes < hinted { 1.0 } else { 0.0f32 };
-    let (rows, rank) = (extent.glyphs * extent.sizes, extent.rank);
-    let mask = TensorData::new((0..rows * rank).map(of).collect(), [rows, rank]);
-    Tensor::<2>::from_data(mask, device).inner()
 }
 
 #[cfg(test)]

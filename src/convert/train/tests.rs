@@ -57,15 +57,23 @@ fn training_is_reproducible() {
     assert_eq!(trained(&lessons, scale, Target::Smooth, 20), trained(&lessons, scale, Target::Smooth, 20));
 }
 
+/// Sums over other lengths round differently, which a step of Adam turns into so much (em, pixels) where there is
+/// hardly any gradient. Later steps amplify it.
+const DRIFT: f32 = 1e-4;
+
 #[test]
 fn glyphs_that_are_trained_together_do_not_influence_each_other() {
     let (lessons, scale) = lessons("g.W", Target::Smooth);
-    let together = trained(&lessons, scale, Target::Smooth, STEPS);
-    for (lesson, together) in lessons.iter().zip(&together) {
-        let alone = trained(std::slice::from_ref(lesson), scale, Target::Smooth, STEPS);
-        // Sums over other lengths round differently, which Adam amplifies; neither is the better one.
-        let (together, alone) = (mae(lesson, together, scale), mae(lesson, &alone[0], scale));
-        assert!((together / alone - 1.0).abs() < 0.1, "glyph {}: {together} and {alone}", lesson.gid);
+    let together = trained(&lessons, scale, Target::Smooth, 1);
+    let start = drafts(&lessons, scale, Target::Smooth);
+    for ((lesson, together), start) in lessons.iter().zip(&together).zip(&start) {
+        let alone = &trained(std::slice::from_ref(lesson), scale, Target::Smooth, 1)[0];
+        let far = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        let drift = [far(&together.field, &alone.field), far(&together.hinted[1], &alone.hinted[1])];
+        let moved = [far(&together.field, &start.field), far(&together.hinted[1], &start.hinted[1])];
+        for (drift, moved) in drift.into_iter().zip(moved) {
+            assert!(drift < DRIFT && moved > 10.0 * DRIFT, "glyph {}: {drift} of {moved}", lesson.gid);
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-use super::super::beyond;
+use super::super::beyond::extended;
 use super::*;
 use crate::convert::samples::lessons;
 use crate::convert::start::Capacity;
@@ -46,11 +46,12 @@ fn largest_difference(text: &str, target: Target) -> (f32, usize) {
     let models: Vec<GridFit> = drafts.iter().map(|d| GridFit::new(&d.quantise(), scale).unwrap()).collect();
     let units = f32::from(scale.units_per_em);
     let (lessons, drafts): (Vec<Lesson>, Vec<Draft>) =
-        lessons.iter().zip(&drafts).map(|(l, d)| beyond(l, d, units)).unzip();
+        lessons.iter().zip(&drafts).map(|(l, d)| extended(l, d, units)).unzip();
     let lessons: Vec<Lesson> = lessons.iter().zip(&models).map(|(l, m)| own_lesson(l, m)).collect();
     let extent = Extent::of(&drafts, lessons[0].sizes.len());
     assert!(extent.sizes > scale.sizes(), "plain sizes are evaluated, too");
-    let weights = Parameters::from_drafts(&drafts, extent, &device).rounded().ordered(extent);
+    let learnt = Learnt::new(scale.sizes(), extent, &device);
+    let weights = Parameters::from_drafts(&drafts, extent, &device).rounded(&learnt).ordered(extent);
     let (mut largest, mut pixels) = (0.0f32, 0);
     for k in 0..GROUPS {
         let group = Group::new(&lessons, &drafts, &models, units, extent, k, &device).unwrap();
