@@ -3,7 +3,8 @@
 //! `cargo run --release --example figures [-- OPTIONS] [FONT.ttf ...]`: printable ASCII at 8–64 ppem; without fonts,
 //! the three that README speaks of. `--quality 0,25,50,75,100` prints a line for each of these settings, and
 //! `--target mono` hints in x too. `--train-ppem 8-64:2` learns from these sizes alone and tells the others' error.
-//! The error is measured on the finished files.
+//! The error is measured on the finished files; the last but one column is against the plain outline, at sizes beyond
+//! the trained ones.
 
 #![allow(clippy::print_stdout)]
 
@@ -12,10 +13,12 @@ use std::thread::available_parallelism;
 use std::time::Instant;
 
 use clap::Parser;
-use nfr::Target;
 use nfr::compare::fonts::FontPair;
+use nfr::compare::metrics::Sums;
 use nfr::convert::ppem::PpemList;
+use nfr::convert::teacher::Teacher;
 use nfr::convert::{Options, Progress, Quality, convert};
+use nfr::{Font, Rasterizer, Target};
 
 const FONTS: [&str; 3] =
     ["fonts/LiberationSans-Regular.ttf", "fonts/LiberationSerif-Regular.ttf", "fonts/DejaVuSans.ttf"];
@@ -41,6 +44,9 @@ struct Args {
     unicodes: String,
 }
 
+/// Sizes at which a render has to follow the plain outline.
+const BEYOND: [f32; 7] = [73.0, 80.0, 96.0, 128.0, 160.0, 192.0, 256.0];
+
 struct Silent;
 
 impl Progress for Silent {
@@ -51,9 +57,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let args = Args::parse();
     let fonts = if args.fonts.is_empty() { FONTS.map(String::from).to_vec() } else { args.fonts.clone() };
     println!(
-        "| font | quality | mae (unhinted) | bad16 (unhinted) | mae 8–15 ppem | worst glyph | bytes a glyph | time |"
+        "| font | quality | mae (unhinted) | bad16 (unhinted) | mae 8–15 ppem | worst glyph | bytes a glyph | plain outline at 73–256 ppem | time |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     for path in fonts {
         for quality in &args.quality {
             println!("{}", line(&path, *quality, &args)?);
@@ -92,12 +98,24 @@ fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>>
     let (neural, unhinted) = (&report.totals.neural.figures, &report.totals.unhinted.figures);
     let worst = report.by_glyph.first().map_or(0.0, |g| g.compared.neural.figures.mae);
     let small = report.bands.first().map_or(0.0, |b| b.compared.neural.figures.mae);
+    let beyond = beyond(&Teacher::new(&font, args.target)?, &conversion.font, &options.gids)?;
     Ok(format!(
-        "| {path} | {quality} | {:.4} ({:.4}) | {:.2} % ({:.1} %) | {small:.4} | {worst:.4} | {:.0} | {seconds:.0} s |",
+        "| {path} | {quality} | {:.4} ({:.4}) | {:.2} % ({:.1} %) | {small:.4} | {worst:.4} | {:.0} | {beyond:.4} | {seconds:.0} s |",
         neural.mae,
         unhinted.mae,
         100.0 * neural.bad16,
         100.0 * unhinted.bad16,
         report.subject.bytes_per_glyph,
     ))
+}
+
+/// The mean absolute error against the plain outline.
+fn beyond(teacher: &Teacher<'_>, converted: &[u8], gids: &[u16]) -> Result<f64, Box<dyn Error>> {
+    let font = Font::parse(converted)?;
+    let mut rasterizer = Rasterizer::new(&font);
+    let mut sums = Sums::default();
+    for (gid, ppem) in gids.iter().flat_map(|gid| BEYOND.map(|ppem| (*gid, ppem))) {
+        sums.add(&teacher.unhinted(gid, ppem)?.rasterize(), &rasterizer.render(gid, ppem)?);
+    }
+    Ok(sums.mae())
 }
