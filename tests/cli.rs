@@ -119,6 +119,9 @@ fn options_that_make_no_sense_are_wrong_usage() {
     refused(&["--glyphs", ","], &["list is empty"]);
     refused(&["--quiet", "--verbose"], &["--quiet", "--verbose"]);
     refused(&["--nosuch"], &["--nosuch"]);
+    for quality in ["-1", "100.1", "best", "NaN"] {
+        refused(&[&format!("--quality={quality}")], &["--quality", "0 to 100"]);
+    }
     nfr_convert(&[SANS]).rejects_usage(&["<OUTPUT>"]);
     nfr(&["nosuch"]).rejects_usage(&["nosuch"]);
     nfr(&["render", SANS]).rejects_usage(&["--json", "--png"]);

@@ -28,6 +28,7 @@ const ACCENTED: &str = "AEaeoucÁÀÂÄÅáàâäåéèêëóòôöúùûüç";
 fn options(data: &[u8], text: &str, steps: usize) -> Options {
     let mut options = Options { gids: gids(data, text), ppem: 8..=40, ..Options::default() };
     options.schedule.steps = steps;
+    options.polish.rounds = 0;
     options
 }
 
