@@ -45,7 +45,7 @@ struct Args {
 }
 
 /// Sizes at which a render has to follow the plain outline.
-const BEYOND: [f32; 7] = [73.0, 80.0, 96.0, 128.0, 160.0, 192.0, 256.0];
+const BEYOND: [f32; 8] = [65.0, 72.0, 80.0, 96.0, 128.0, 160.0, 192.0, 256.0];
 
 struct Silent;
 
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let args = Args::parse();
     let fonts = if args.fonts.is_empty() { FONTS.map(String::from).to_vec() } else { args.fonts.clone() };
     println!(
-        "| font | quality | mae (unhinted) | bad16 (unhinted) | mae 8–15 ppem | worst glyph | bytes a glyph | plain outline at 73–256 ppem | time |"
+        "| font | quality | mae (unhinted) | bad16 (unhinted) | mae 8–15 ppem | worst glyph | bytes a glyph | plain outline at 65–256 ppem | time |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     for path in fonts {

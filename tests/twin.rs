@@ -9,9 +9,9 @@ use nfr::convert::start::{Capacity, Draft};
 use nfr::convert::teach::lesson;
 use nfr::convert::teacher::Teacher;
 use nfr::model::gridfit::{
-    AxisWarp, BOX_SLACK, DEFORM_NODES, EMBEDDING_STEPS, FADE_SPAN, FIELD_STEPS, GridFit, MAX_PPEM,
-    MIN_GRADIENT, MIN_KNOT_GAP, MIN_SKEW, PADDING, PATTERN_STEPS, SLOPE_REACH, Scale, Scratch, WARP_STEPS,
-    Weights, half_plane, samples_per_pixel,
+    AxisWarp, BOX_SLACK, DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, GridFit, MAX_PPEM, MIN_GRADIENT,
+    MIN_KNOT_GAP, MIN_SKEW, PADDING, PATTERN_STEPS, SLOPE_REACH, Scale, Scratch, WARP_STEPS, Weights,
+    half_plane, samples_per_pixel,
 };
 use nfr::table::codec::{MAX_CELLS, MAX_KNOTS, MAX_RANK};
 use nfr::table::{MAJOR_VERSION, MAX_TRAINED_PPEM, MINOR_VERSION};
@@ -33,26 +33,21 @@ impl Twin<'_> {
         f64::from(units) / f64::from(self.scale.units_per_em)
     }
 
-    /// The number of the nearest trained size, halves upwards.
-    fn nearest(&self) -> usize {
-        let distance = |size: &usize| (self.scale.ppem_of(*size) as f64 - self.ppem).abs();
-        let sizes = (0..self.scale.sizes()).rev();
-        sizes.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap()
+    /// The number of the trained size that this one is fitted as: it is less than half a pixel per em off, or half of
+    /// one above it.
+    fn fitted(&self) -> Option<usize> {
+        let off = |size: &usize| self.ppem - self.scale.ppem_of(*size) as f64;
+        (0..self.scale.sizes()).find(|size| (-0.5..0.5).contains(&off(size)))
     }
 
     /// The size that displacements belong to.
     fn grid_size(&self) -> f64 {
-        let trained = f64::from(self.scale.first_ppem)..=f64::from(self.scale.last_ppem);
-        if trained.contains(&self.ppem) { self.scale.ppem_of(self.nearest()) as f64 } else { self.ppem }
+        self.fitted().map_or(self.ppem, |size| self.scale.ppem_of(size) as f64)
     }
 
     /// What a displacement known for each trained size is at this one.
     fn at_size(&self, value: impl Fn(usize) -> f64) -> f64 {
-        let (first, last) = (f64::from(self.scale.first_ppem), f64::from(self.scale.last_ppem));
-        let beyond =
-            if self.ppem < first { (first - self.ppem) / first } else { (self.ppem - last).max(0.0) / last };
-        let strength = (1.0 - beyond / f64::from(FADE_SPAN)).max(0.0);
-        value(self.nearest()) * strength
+        self.fitted().map_or(0.0, value)
     }
 
     fn warp(&self, axis: usize) -> &AxisWarp {
@@ -268,7 +263,6 @@ fn the_specification_names_the_constants_that_are_in_use() {
         format!("φ_r[row][column] = stored / {PATTERN_STEPS}\n"),
         format!("e[s][r] = stored / {EMBEDDING_STEPS} "),
         format!("a number above 0 and at most {MAX_PPEM}:"),
-        format!("(firstPpem · {FADE_SPAN}) + max(P − lastPpem, 0) / (lastPpem · {FADE_SPAN})"),
         format!("h_(k−1) + 1/{gap})"),
         format!("floor(l + 1/{slack}) to max(ceil(h − 1/{slack}), floor(l + 1/{slack}) + 1)"),
         format!("n = {a} below 11 ppem, {b} below 16, {c} below 24, {d} below 96, and {e} from there"),

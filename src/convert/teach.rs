@@ -40,7 +40,7 @@ impl Lesson {
             let bitmap = self.outline.with_points(&points).rasterize();
             HintedGlyph { ppem, points, bitmap, predicted: false }
         };
-        [last + last / 2, last * 2].map(plain).into()
+        [last + last.div_ceil(2), last * 2].map(plain).into()
     }
 }
 

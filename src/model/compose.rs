@@ -80,7 +80,7 @@ impl Origin {
     }
 
     /// The place in pixels at a size. A part that snaps stands where it does at the trained size that
-    /// stands for this one; beyond the trained sizes snapping fades.
+    /// stands for this one; beyond the trained sizes nothing snaps.
     pub(crate) fn at(&self, ppem: f32) -> [f32; 2] {
         let fit = self.scale.fit(ppem);
         [0, 1].map(|axis| match self.moves[axis].get(fit.size) {
@@ -124,7 +124,7 @@ mod tests {
         for (ppem, y) in [(10.4, 3.0), (10.5, 4.0), (11.4, 4.0), (11.6, 2.0)] {
             assert!((origin.at(ppem)[1] - y).abs() < 1e-5, "between sizes it stands as at the nearer one");
         }
-        assert!((origin.at(100.0)[1] - 26.0).abs() < 1e-4, "snapping does not fade");
+        assert!((origin.at(100.0)[1] - 26.0).abs() < 1e-4, "nothing snaps beyond the trained sizes");
     }
 
     #[test]

@@ -38,8 +38,6 @@ pub const BOX_SLACK: f32 = 1.0 / 64.0;
 pub const MAX_PPEM: f32 = 2048.0;
 /// The longest side of a bitmap in pixels.
 pub(crate) const MAX_SIDE: u32 = 8192;
-/// Displacements fade to nothing over this share of the size beyond the trained ones.
-pub const FADE_SPAN: f32 = 0.125;
 
 /// One axis of the warp: knots in font units and their hinted positions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -93,16 +91,15 @@ impl Scale {
         usize::from(self.first_ppem) + size
     }
 
-    /// The trained size that stands for a size: the nearest one, halves upwards. Its pixel positions stay as they
-    /// are, so that edges are as crisp; beyond the trained sizes displacements fade.
+    /// How a size is fitted: as the nearest whole one, halves upwards, whose pixel positions stay as they are, so that
+    /// edges are as crisp. If that is no trained size, nothing is moved.
     pub(crate) fn fit(&self, ppem: f32) -> Fit {
-        let (first, last) = (f32::from(self.first_ppem), f32::from(self.last_ppem));
-        let size = ((ppem - first).clamp(0.0, last - first) + 0.5) as usize;
-        let within = first <= ppem && ppem <= last;
-        let grid = if within { self.ppem_of(size) as f32 } else { ppem };
-        let beyond =
-            (first - ppem).max(0.0) / (first * FADE_SPAN) + (ppem - last).max(0.0) / (last * FADE_SPAN);
-        Fit { size, grid, strength: (1.0 - beyond).max(0.0) }
+        let whole = (ppem + 0.5) as usize;
+        if (usize::from(self.first_ppem)..=usize::from(self.last_ppem)).contains(&whole) {
+            Fit { size: whole - usize::from(self.first_ppem), grid: whole as f32, strength: 1.0 }
+        } else {
+            Fit { size: 0, grid: ppem, strength: 0.0 }
+        }
     }
 }
 
@@ -113,7 +110,7 @@ pub(crate) struct Fit {
     pub(crate) size: usize,
     /// The size in pixels per em that they belong to.
     pub(crate) grid: f32,
-    /// The share of the displacements.
+    /// What displacements are multiplied with: 1, or 0 where they do not count.
     pub(crate) strength: f32,
 }
 

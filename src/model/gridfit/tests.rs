@@ -76,17 +76,17 @@ fn a_larger_box_than_the_placement_is_drawn_the_same_with_empty_pixels_around() 
 }
 
 #[test]
-fn displacements_fade_out_beyond_the_trained_sizes() {
+fn nothing_is_moved_beyond_the_trained_sizes() {
     let model = GridFit::new(&square(), SCALE).unwrap();
-    let plain = |ppem: f32| [0.0, 0.5 * ppem];
-    let far = |ppem: f32| {
+    let far = |ppem: f32, grid: f32| {
         let hinted: Vec<f32> = model.hinted_knots(1, ppem).collect();
-        (hinted[1] - plain(ppem)[1]).abs()
+        (hinted[1] - 0.5 * grid).abs()
     };
     // 500 units at 9 ppem are 4.5 pixels, hinted to 5; at 11 ppem 5.5, hinted to 6.
-    assert!((far(9.0) - 0.5).abs() < 1e-5 && (far(11.0) - 0.5).abs() < 1e-5);
-    assert!(far(11.5) < far(11.0) && far(11.5) > 0.0);
-    assert_eq!([7.0, 4.0, 11.0 * 1.125, 40.0, 2000.0].map(far), [0.0; 5]);
+    for (ppem, whole) in [(8.5, 9.0), (9.0, 9.0), (9.4, 9.0), (10.5, 11.0), (11.0, 11.0), (11.4, 11.0)] {
+        assert!((far(ppem, whole) - 0.5).abs() < 1e-5, "{ppem} is fitted as {whole}");
+    }
+    assert_eq!([7.4, 4.0, 11.5, 12.0, 40.0, 2000.0].map(|ppem| far(ppem, ppem)), [0.0; 6]);
 }
 
 #[test]
