@@ -25,8 +25,8 @@ fn at(tracks: &[Track], wanted: u16) -> Vec<f64> {
 /// A level that moves by more than this, in pixels, is seen to be rounded.
 const ROUNDING_SHOWS: f64 = 0.15;
 
-/// Of bars at sizes that are left out, so many are found where they belong and as thick as they are (all but half a
-/// pixel of a thickness that rounds either way), and so many are gone.
+/// Of bars at sizes that are left out, at least so many are found, and at most so many vanish: known sizes do not tell
+/// everything.
 const BARS: [f64; 2] = [0.95, 0.01];
 
 #[test]
