@@ -52,7 +52,7 @@ fn measure(name: &str, target: Target) -> Measured {
         let at = teacher.at(ppem).unwrap();
         for gid in &options.gids {
             let truth = at.hinted(*gid).unwrap().rasterize();
-            ours.add(&truth, &rasterizer.render(*gid, ppem.into()).unwrap());
+            ours.add(&truth, &rasterizer.render(*gid, f32::from(ppem)).unwrap());
             plain.add(&truth, &teacher.unhinted(*gid, ppem.into()).unwrap().rasterize());
         }
     }

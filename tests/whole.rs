@@ -66,7 +66,7 @@ fn a_composed_glyph_is_drawn_as_its_parts_where_hints_put_them() {
         let mut add = |sums: &mut Sums, text: &str| {
             for gid in gids(&data, text) {
                 let truth = at.hinted(gid).unwrap().rasterize();
-                sums.add(&truth, &rasterizer.render(gid, ppem.into()).unwrap());
+                sums.add(&truth, &rasterizer.render(gid, f32::from(ppem)).unwrap());
             }
         };
         add(&mut base, "aeou");
@@ -298,14 +298,14 @@ fn sizes_left_out_of_the_training_are_predicted() {
     for ppem in (8..=41).step_by(3) {
         for gid in &options.gids {
             let truth = teacher.at(ppem).unwrap().hinted(*gid).unwrap().rasterize();
-            sums.add(&truth, &font.glyph(*gid).unwrap().render(ppem.into()).unwrap());
+            sums.add(&truth, &font.glyph(*gid).unwrap().render(f32::from(ppem)).unwrap());
         }
     }
     assert_eq!(sums, conversion.sums);
     for ppem in 8..=41 {
         for gid in &options.gids {
             let truth = teacher.at(ppem).unwrap().hinted(*gid).unwrap().rasterize();
-            let ours = font.glyph(*gid).unwrap().render(ppem.into()).unwrap();
+            let ours = font.glyph(*gid).unwrap().render(f32::from(ppem)).unwrap();
             // A level that is rounded the other way ends a pixel further.
             let near = |a: u32, b: u32| a.abs_diff(b) <= 2;
             let (ours, truth) = (ours.placement, truth.placement);

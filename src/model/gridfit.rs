@@ -114,6 +114,14 @@ pub(crate) struct Fit {
     pub(crate) strength: f32,
 }
 
+/// Checks that a size is drawn at all.
+pub(crate) fn check_ppem(ppem: f32) -> Result<(), Error> {
+    if ppem > 0.0 && ppem <= MAX_PPEM {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_PPEM}")))
+}
+
 /// How many samples a pixel has along each axis: small sizes are supersampled.
 pub fn samples_per_pixel(ppem: f32) -> usize {
     match ppem {
@@ -308,9 +316,7 @@ impl GridFit {
     ///
     /// As `placement`.
     pub fn placement_at(&self, ppem: f32, origin: [f32; 2]) -> Result<Placement, Error> {
-        if !(ppem > 0.0 && ppem <= MAX_PPEM) {
-            return Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_PPEM}")));
-        }
+        check_ppem(ppem)?;
         if self.field.is_empty() {
             return Ok(Placement::default());
         }

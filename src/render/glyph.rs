@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Bitmap, Placement};
+use super::{Bitmap, Placement, Setting};
 use crate::error::Error;
 use crate::model::compose::Origin;
 use crate::model::gridfit::{GridFit, MAX_SIDE, Scale, Scratch};
@@ -29,21 +29,22 @@ impl Glyph {
         self.parts.first().map(|(model, _)| model.clone())
     }
 
-    /// Where the bitmap lies at a size in pixels per em, which may be fractional.
+    /// Where the bitmap lies at a size in pixels per em, or at a [`Setting`].
     ///
     /// # Errors
     ///
-    /// `InvalidParameter` for a size that is not a positive number, `LimitExceeded` for a bitmap that would
-    /// be too large.
-    pub fn placement(&self, ppem: f32) -> Result<Placement, Error> {
+    /// `InvalidParameter` for a size that is not a positive number or a pen too far off, `LimitExceeded` for a
+    /// bitmap that would be too large.
+    pub fn placement(&self, setting: impl Into<Setting>) -> Result<Placement, Error> {
+        let setting = setting.into().checked()?;
         let mut whole = Placement::default();
         for (model, origin) in &self.parts {
-            whole = union(whole, model.placement_at(ppem, origin.at(ppem))?);
+            whole = union(whole, model.placement_at(setting.ppem, place(origin, setting))?);
         }
         if whole.width > MAX_SIDE || whole.height > MAX_SIDE {
             return Err(Error::LimitExceeded(format!(
-                "a bitmap of {}×{} pixels at {ppem} ppem",
-                whole.width, whole.height
+                "a bitmap of {}×{} pixels at {} ppem",
+                whole.width, whole.height, setting.ppem
             )));
         }
         Ok(whole)
@@ -57,13 +58,14 @@ impl Glyph {
     /// As `placement`, and `InvalidParameter` for a buffer that is too small.
     pub fn render_into(
         &self,
-        ppem: f32,
+        setting: impl Into<Setting>,
         scratch: &mut Scratch,
         pixels: &mut [u8],
     ) -> Result<Placement, Error> {
-        let placement = self.placement(ppem)?;
+        let setting = setting.into();
+        let placement = self.placement(setting)?;
         let pixels = buffer_for(placement, pixels)?;
-        self.draw(ppem, placement, scratch, pixels)?;
+        self.draw(setting, placement, scratch, pixels)?;
         Ok(placement)
     }
 
@@ -72,32 +74,33 @@ impl Glyph {
     /// # Errors
     ///
     /// As `placement`.
-    pub fn render(&self, ppem: f32) -> Result<Bitmap, Error> {
-        let placement = self.placement(ppem)?;
+    pub fn render(&self, setting: impl Into<Setting>) -> Result<Bitmap, Error> {
+        let setting = setting.into();
+        let placement = self.placement(setting)?;
         let mut pixels = vec![0; placement.area()];
-        self.draw(ppem, placement, &mut Scratch::default(), &mut pixels)?;
+        self.draw(setting, placement, &mut Scratch::default(), &mut pixels)?;
         Ok(Bitmap { placement, pixels })
     }
 
     fn draw(
         &self,
-        ppem: f32,
+        setting: Setting,
         placement: Placement,
         scratch: &mut Scratch,
         pixels: &mut [u8],
     ) -> Result<(), Error> {
         if let [(model, origin)] = self.parts.as_slice() {
-            model.draw_at(ppem, origin.at(ppem), placement, scratch, pixels);
+            model.draw_at(setting.ppem, place(origin, setting), placement, scratch, pixels);
             return Ok(());
         }
         pixels.fill(0);
         let mut layer = std::mem::take(&mut scratch.layer);
         for (model, origin) in &self.parts {
-            let origin = origin.at(ppem);
-            let place = model.placement_at(ppem, origin)?;
+            let origin = place(origin, setting);
+            let place = model.placement_at(setting.ppem, origin)?;
             layer.clear();
             layer.resize(place.area(), 0);
-            model.draw_at(ppem, origin, place, scratch, &mut layer);
+            model.draw_at(setting.ppem, origin, place, scratch, &mut layer);
             add(placement, pixels, place, &layer);
         }
         scratch.layer = layer;
@@ -108,6 +111,12 @@ impl Glyph {
     pub fn memory(&self) -> usize {
         self.parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum()
     }
+}
+
+/// Where a part stands, from the pixel that the pen is given from.
+fn place(origin: &Origin, setting: Setting) -> [f32; 2] {
+    let at = origin.at(setting.ppem);
+    [0, 1].map(|axis| at[axis] + setting.pen[axis])
 }
 
 /// The box around two bitmaps; one without pixels takes no room.

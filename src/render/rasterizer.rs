@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 #[cfg(feature = "fallback")]
 use super::glyph::buffer_for;
-use super::{Bitmap, Font, Glyph, Placement};
+use super::{Bitmap, Font, Glyph, Placement, Setting};
 use crate::error::Error;
 use crate::model::gridfit::Scratch;
 use crate::table::PartsDecoder;
@@ -38,19 +38,20 @@ impl<'a> Rasterizer<'a> {
         &self.font
     }
 
-    /// Where a glyph's bitmap lies at a size in pixels per em, which may be fractional.
+    /// Where a glyph's bitmap lies at a size in pixels per em, or at a [`Setting`].
     ///
     /// # Errors
     ///
     /// `MissingGlyph` for a glyph without a model (with `fallback`: for one that the font does not have),
-    /// `Malformed` for a damaged one, `InvalidParameter` for a size that is not a positive number,
-    /// `LimitExceeded` for a bitmap that would be too large.
-    pub fn placement(&mut self, gid: u16, ppem: f32) -> Result<Placement, Error> {
+    /// `Malformed` for a damaged one, `InvalidParameter` for a size that is not a positive number or a pen too far
+    /// off, `LimitExceeded` for a bitmap that would be too large.
+    pub fn placement(&mut self, gid: u16, setting: impl Into<Setting>) -> Result<Placement, Error> {
+        let setting = setting.into();
         #[cfg(feature = "fallback")]
         if !self.font.has_model(gid) {
-            return self.outline(gid, ppem).map(|bitmap| bitmap.placement);
+            return self.outline(gid, setting).map(|bitmap| bitmap.placement);
         }
-        self.cache.get(&self.font, &mut self.parts, gid)?.placement(ppem)
+        self.cache.get(&self.font, &mut self.parts, gid)?.placement(setting)
     }
 
     /// Draws a glyph's coverage, 0–255, into `pixels`: top row first, `placement.width` bytes a row. Bytes
@@ -59,15 +60,21 @@ impl<'a> Rasterizer<'a> {
     /// # Errors
     ///
     /// As `placement`, and `InvalidParameter` for a buffer that is too small.
-    pub fn render_into(&mut self, gid: u16, ppem: f32, pixels: &mut [u8]) -> Result<Placement, Error> {
+    pub fn render_into(
+        &mut self,
+        gid: u16,
+        setting: impl Into<Setting>,
+        pixels: &mut [u8],
+    ) -> Result<Placement, Error> {
+        let setting = setting.into();
         #[cfg(feature = "fallback")]
         if !self.font.has_model(gid) {
-            let bitmap = self.outline(gid, ppem)?;
+            let bitmap = self.outline(gid, setting)?;
             buffer_for(bitmap.placement, pixels)?.copy_from_slice(&bitmap.pixels);
             return Ok(bitmap.placement);
         }
         let glyph = self.cache.get(&self.font, &mut self.parts, gid)?;
-        glyph.render_into(ppem, &mut self.scratch, pixels)
+        glyph.render_into(setting, &mut self.scratch, pixels)
     }
 
     /// Draws a glyph into a new bitmap.
@@ -75,26 +82,26 @@ impl<'a> Rasterizer<'a> {
     /// # Errors
     ///
     /// As `placement`.
-    pub fn render(&mut self, gid: u16, ppem: f32) -> Result<Bitmap, Error> {
-        let placement = self.placement(gid, ppem)?;
+    pub fn render(&mut self, gid: u16, setting: impl Into<Setting>) -> Result<Bitmap, Error> {
+        let setting = setting.into();
+        let placement = self.placement(gid, setting)?;
         let mut pixels = vec![0; placement.area()];
-        self.render_into(gid, ppem, &mut pixels)?;
+        self.render_into(gid, setting, &mut pixels)?;
         Ok(Bitmap { placement, pixels })
     }
 
     #[cfg(feature = "fallback")]
-    fn outline(&self, gid: u16, ppem: f32) -> Result<Bitmap, Error> {
+    fn outline(&self, gid: u16, setting: Setting) -> Result<Bitmap, Error> {
         use skrifa::instance::{LocationRef, Size};
         use skrifa::outline::DrawSettings;
-        if !(ppem > 0.0 && ppem <= crate::model::gridfit::MAX_PPEM) {
-            return Err(Error::InvalidParameter(format!("{ppem} is no size in pixels per em")));
-        }
+        let Setting { ppem, pen } = setting.checked()?;
         let outlines = self.font.outlines();
         let glyph = outlines.get(skrifa::GlyphId::from(gid)).ok_or(Error::MissingGlyph(gid))?;
         let mut outline = super::outline::Outline::default();
         glyph
             .draw(DrawSettings::unhinted(Size::new(ppem), LocationRef::default()), &mut outline)
             .map_err(|e| Error::Malformed(format!("the outline of glyph {gid} cannot be drawn ({e})")))?;
+        outline.translate(pen);
         Ok(outline.rasterize())
     }
 }
