@@ -29,8 +29,7 @@ pub mod convert;
 
 pub use error::Error;
 pub use model::Target;
-pub use model::gridfit::Scratch;
-pub use render::{Bitmap, Font, Glyph, MAX_PEN, Placement, Rasterizer, Setting};
+pub use render::{Bitmap, Font, Glyph, MAX_PEN, Placement, Rasterizer, Scratch, Setting};
 
 /// Runs the examples of README as tests.
 #[cfg(doctest)]

@@ -7,6 +7,8 @@
 mod samples;
 
 use nfr::{Error, Font, Rasterizer};
+#[cfg(feature = "fallback")]
+use nfr::{MAX_PEN, Setting};
 
 use samples::{converted, font, gid};
 
@@ -50,6 +52,30 @@ fn with_the_feature_a_glyph_that_has_no_model_is_drawn_from_its_outline() {
 
 #[cfg(feature = "fallback")]
 #[test]
+fn with_the_feature_the_outline_is_moved_with_the_pen() {
+    use nfr::convert::teacher::Teacher;
+
+    let original = font("LiberationSans-Regular");
+    let data = converted(&original, ".", 0).font;
+    let font = Font::parse(&data).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
+    let teacher = Teacher::new(&read_fonts::FontRef::new(&original).unwrap(), font.target()).unwrap();
+    let pens = [[0.25, 0.0], [0.5, 0.5], [-0.75, 3.0], [1000.5, -0.1]];
+    for (ppem, pen) in [8.0, 16.5, 64.0].into_iter().flat_map(|ppem| pens.map(|pen| (ppem, pen))) {
+        let setting = Setting { pen, ..Setting::from(ppem) };
+        for character in ['g', 'é', ' '] {
+            let gid = gid(&original, character);
+            let mut plain = teacher.unhinted(gid, ppem).unwrap();
+            plain.translate(pen);
+            let plain = plain.rasterize();
+            assert_eq!(rasterizer.placement(gid, setting), Ok(plain.placement));
+            assert_eq!(rasterizer.render(gid, setting).unwrap(), plain, "{character:?} at {setting:?}");
+        }
+    }
+}
+
+#[cfg(feature = "fallback")]
+#[test]
 fn with_the_feature_the_errors_are_those_of_a_model() {
     let original = font("LiberationSans-Regular");
     let data = converted(&original, ".", 0).font;
@@ -58,6 +84,10 @@ fn with_the_feature_the_errors_are_those_of_a_model() {
     let g = gid(&original, 'g');
     for ppem in [0.0, -1.0, f32::NAN, f32::INFINITY, 2049.0] {
         assert!(matches!(rasterizer.render(g, ppem), Err(Error::InvalidParameter(_))), "{ppem}");
+    }
+    for pen in [[f32::NAN, 0.0], [0.0, f32::INFINITY], [MAX_PEN + 1.0, 0.0]] {
+        let setting = Setting { pen, ..Setting::from(16.0) };
+        assert!(matches!(rasterizer.render(g, setting), Err(Error::InvalidParameter(_))), "{pen:?}");
     }
     assert!(matches!(rasterizer.render_into(g, 16.0, &mut [0; 3]), Err(Error::InvalidParameter(_))));
     let missing = font.glyph_count();

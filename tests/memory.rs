@@ -8,7 +8,9 @@ mod samples;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use nfr::{Font, Rasterizer, Scratch};
+use nfr::model::gridfit::{AxisWarp, GridFit, Scale, Weights};
+use nfr::table::codec::{MAX_CELLS, MAX_RANK};
+use nfr::{Font, Rasterizer, Scratch, Setting};
 use proptest::prelude::*;
 
 use samples::{ascii, converted, font};
@@ -49,11 +51,15 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-const SIZES: [f32; 6] = [8.0, 12.5, 20.0, 33.0, 64.0, 100.0];
+/// Small and large ones in turn; from 128 on, outlines are traced anew each time.
+const SIZES: [f32; 8] = [8.0, 100.0, 12.5, 200.0, 20.0, 64.0, 130.5, 33.0];
+/// Where the pen is, for each size.
+const PENS: [[f32; 2]; 8] =
+    [[0.0; 2], [0.25, 0.0], [0.5, 0.5], [0.75, -0.3], [-0.9, 0.0], [0.0, 0.1], [3.3, -7.2], [0.6, 0.0]];
 
 #[test]
 fn a_warm_loop_allocates_nothing() {
-    let data = converted(&font("LiberationSans-Regular"), &ascii(), 0).font;
+    let data = converted(&font("LiberationSans-Regular"), &(ascii() + "áèô"), 0).font;
     let font = Font::parse(&data).unwrap();
     let mut rasterizer = Rasterizer::new(&font);
     let glyphs: Vec<_> = font.modelled_glyphs().map(|gid| (gid, font.glyph(gid).unwrap())).collect();
@@ -62,10 +68,11 @@ fn a_warm_loop_allocates_nothing() {
     let mut draw_all = || {
         let before = ALLOCATIONS.get();
         for (gid, glyph) in &glyphs {
-            for ppem in SIZES {
-                rasterizer.placement(*gid, ppem).unwrap();
-                rasterizer.render_into(*gid, ppem, &mut pixels).unwrap();
-                glyph.render_into(ppem, &mut scratch, &mut pixels).unwrap();
+            for (ppem, pen) in SIZES.into_iter().zip(PENS) {
+                let setting = Setting { pen, ..Setting::from(ppem) };
+                rasterizer.placement(*gid, setting).unwrap();
+                rasterizer.render_into(*gid, setting, &mut pixels).unwrap();
+                glyph.render_into(setting, &mut scratch, &mut pixels).unwrap();
             }
         }
         ALLOCATIONS.get() - before
@@ -102,8 +109,46 @@ fn a_cache_stays_within_its_limit() {
 }
 
 /// What reading a table with its models may take, however damaged it is: the largest model has 65,536 hinted
-/// positions of 4 bytes, in a vector for each axis and once more as plain positions and as floating-point numbers.
-const READING: isize = 2 << 20;
+/// positions of 4 bytes, in a vector for each axis and once more as floating-point numbers; and if its field is
+/// inside in every second cell, an outline of some 17,000 vertices of 74 bytes at each of three tolerances, in vectors
+/// that may be longer, for which 0.7 MB are taken while it is traced.
+const READING: isize = 6 << 20;
+
+/// A model as large as a table can hold one, whose field has the sign that `inside` says.
+fn largest(scale: Scale, inside: impl Fn(usize, usize) -> bool) -> Weights {
+    let (cells, rank) = (MAX_CELLS, usize::from(MAX_RANK));
+    let stride = usize::from(cells) + 2;
+    let value = |k: usize| if inside(k % stride, k / stride) { 127 } else { -127 };
+    let knots: Vec<i16> = (-16..16).map(|k| k * 2000).collect();
+    let warp = AxisWarp { hinted: vec![0; knots.len() * scale.sizes()], knots };
+    Weights {
+        bounds: [-32000, -32000, 32000, 32000],
+        cells: [cells; 2],
+        field: (0..stride * stride).map(value).collect(),
+        warp_x: warp.clone(),
+        warp_y: warp,
+        rank: MAX_RANK,
+        patterns: vec![1; rank * 64],
+        embedding: vec![1; rank * scale.sizes()],
+    }
+}
+
+#[test]
+fn the_largest_models_stay_within_what_reading_may_take() {
+    let scale = Scale { units_per_em: 16, first_ppem: 1, last_ppem: 1024 };
+    for (name, weights) in [
+        ("rows", largest(scale, |_, row| row % 2 == 0)),
+        ("squares", largest(scale, |column, row| (column + row) % 2 == 0)),
+        ("dots", largest(scale, |column, row| column % 2 == 0 && row % 2 == 0)),
+        ("noise", largest(scale, |column, row| (column * column + 3 * row * row * column) % 7 < 3)),
+    ] {
+        let before = LIVE.get();
+        PEAK.set(before);
+        let _model = GridFit::new(&weights, scale).unwrap();
+        let peak = PEAK.get() - before;
+        assert!(peak <= READING, "{name}: {peak} bytes");
+    }
+}
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use nfr::compare::metrics::Sums;
 use nfr::convert::teacher::Teacher;
-use nfr::{Bitmap, Error, Font, Rasterizer, Scratch, Target};
+use nfr::{Bitmap, Error, Font, MAX_PEN, Placement, Rasterizer, Scratch, Setting, Target};
 use read_fonts::FontRef;
 
 use samples::{converted, font, gid};
@@ -283,4 +283,121 @@ fn threads_draw_the_same() {
             assert!(thread.join().unwrap() == alone);
         }
     });
+}
+
+fn set(ppem: f32, pen: [f32; 2]) -> Setting {
+    Setting { pen, ..Setting::from(ppem) }
+}
+
+/// What a drawing with the pen between pixels may miss of the teacher's outline moved likewise, as a share of what one
+/// with the pen on a pixel misses: edges are off by as much, and lie in other pixels. Measured: at most 1.03.
+const PEN_SHARE: f64 = 1.06;
+
+#[test]
+fn a_glyph_between_pixels_is_the_hinted_outline_moved() {
+    let font = neural();
+    let teacher = Teacher::new(&FontRef::new(&ORIGINAL).unwrap(), Target::Smooth).unwrap();
+    let mae = |pen: [f32; 2]| {
+        let mut sums = Sums::default();
+        for ppem in 9..=24u16 {
+            let at = teacher.at(ppem).unwrap();
+            for gid in letters() {
+                let mut outline = at.hinted(gid).unwrap();
+                outline.translate(pen);
+                let drawn = font.glyph(gid).unwrap().render(set(ppem.into(), pen)).unwrap();
+                sums.add(&outline.rasterize(), &drawn);
+            }
+        }
+        sums.mae()
+    };
+    let whole = mae([0.0; 2]);
+    for pen in [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.0, 0.5], [-0.3, 0.2], [100.6, -70.9]] {
+        assert!(mae(pen) <= PEN_SHARE * whole, "{pen:?}: {} for {whole}", mae(pen));
+    }
+}
+
+#[test]
+fn a_pen_on_another_pixel_moves_the_box_and_leaves_its_pixels() {
+    let (accented, neural) = (accented(), neural());
+    let accented = Font::parse(&accented).unwrap();
+    for font in [&neural, &accented] {
+        for gid in font.modelled_glyphs() {
+            let glyph = font.glyph(gid).unwrap();
+            for (ppem, pen) in
+                [(9.0, [0.0; 2]), (12.3, [0.25, 0.5]), (50.0, [-0.125, 0.0]), (130.0, [0.5, 0.75])]
+            {
+                let here = glyph.render(set(ppem, pen)).unwrap();
+                for [right, up] in [[1, 0], [-3, 7], [MAX_PEN as i32 - 1, 1 - MAX_PEN as i32]] {
+                    let there = glyph.render(set(ppem, [pen[0] + right as f32, pen[1] + up as f32])).unwrap();
+                    assert_eq!(there.pixels, here.pixels, "glyph {gid} at {ppem} ppem, {pen:?}");
+                    let Placement { left, top, .. } = here.placement;
+                    let blank = here.pixels.is_empty();
+                    let moved = Placement { left: left + right, top: top + up, ..here.placement };
+                    assert_eq!(there.placement, if blank { here.placement } else { moved });
+                }
+            }
+        }
+    }
+}
+
+/// A font with composed glyphs.
+fn accented() -> Vec<u8> {
+    let conversion = converted(&ORIGINAL, "aeouáàâéèêóòôúùû", 0);
+    assert!(conversion.glyphs.iter().any(|glyph| glyph.composed));
+    conversion.font
+}
+
+#[test]
+fn a_composed_glyph_between_pixels_is_the_hinted_outline_moved() {
+    let data = accented();
+    let font = Font::parse(&data).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
+    let teacher = Teacher::new(&FontRef::new(&ORIGINAL).unwrap(), Target::Smooth).unwrap();
+    let mut mae = |pen: [f32; 2]| {
+        let mut sums = Sums::default();
+        for ppem in [9u16, 12, 16, 20, 24] {
+            let at = teacher.at(ppem).unwrap();
+            for gid in samples::gids(&ORIGINAL, "áàâéèêóòôúùû") {
+                let mut outline = at.hinted(gid).unwrap();
+                outline.translate(pen);
+                let setting = set(ppem.into(), pen);
+                let drawn = rasterizer.render(gid, setting).unwrap();
+                assert_eq!(font.glyph(gid).unwrap().render(setting).as_ref(), Ok(&drawn));
+                sums.add(&outline.rasterize(), &drawn);
+            }
+        }
+        sums.mae()
+    };
+    let whole = mae([0.0; 2]);
+    for pen in [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.0, 0.5], [-0.3, 0.2]] {
+        let moved = mae(pen);
+        assert!(moved <= PEN_SHARE * whole, "{pen:?}: {moved} for {whole}");
+    }
+}
+
+#[test]
+fn pens_that_make_no_sense_are_errors() {
+    let font = neural();
+    let mut rasterizer = Rasterizer::new(&font);
+    let far = MAX_PEN * (1.0 + f32::EPSILON);
+    for gid in letters() {
+        let glyph = font.glyph(gid).unwrap();
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, far, -far, f32::MAX] {
+            for setting in [set(16.0, [bad, 0.0]), set(16.0, [0.0, bad])] {
+                let errors = [
+                    glyph.placement(setting).err(),
+                    glyph.render(setting).err(),
+                    glyph.render_into(setting, &mut Scratch::default(), &mut [0; 1000]).err(),
+                    rasterizer.placement(gid, setting).err(),
+                    rasterizer.render(gid, setting).err(),
+                    rasterizer.render_into(gid, setting, &mut [0; 1000]).err(),
+                ];
+                let named = |error: &Option<Error>| matches!(error, Some(Error::InvalidParameter(_)));
+                assert!(errors.iter().all(named), "{bad}: {errors:?}");
+            }
+        }
+        for pen in [[MAX_PEN, -MAX_PEN], [-MAX_PEN, MAX_PEN], [f32::MIN_POSITIVE, -0.0]] {
+            assert!(glyph.render(set(16.0, pen)).is_ok());
+        }
+    }
 }

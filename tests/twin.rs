@@ -1,5 +1,5 @@
-//! The model as spec/nfrt.md words it, once more: in double precision, each sample on its own, with no matrix
-//! contracted and nothing kept between samples. What the library draws is this, to a level of 255.
+//! What a model draws, once more: the inside of its field's zero level, moved by hinting. In double precision, with no
+//! outline traced: the field is searched in thin upright strips, and what is inside is put where hinting puts it.
 #![cfg(feature = "convert")]
 #![allow(clippy::unwrap_used)]
 
@@ -9,17 +9,80 @@ use nfr::convert::start::{Capacity, Draft};
 use nfr::convert::teach::lesson;
 use nfr::convert::teacher::Teacher;
 use nfr::model::gridfit::{
-    AxisWarp, BOX_SLACK, DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, GridFit, MAX_PPEM, MIN_GRADIENT,
-    MIN_KNOT_GAP, MIN_SKEW, PADDING, PATTERN_STEPS, SLOPE_REACH, Scale, Scratch, WARP_STEPS, Weights,
-    half_plane, samples_per_pixel,
+    AxisWarp, BOX_SLACK, DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, GridFit, MIN_KNOT_GAP, PADDING,
+    PATTERN_STEPS, Scale, WARP_STEPS, Weights,
 };
-use nfr::table::codec::{MAX_CELLS, MAX_KNOTS, MAX_RANK};
-use nfr::table::{MAJOR_VERSION, MAX_TRAINED_PPEM, MINOR_VERSION};
-use nfr::{Placement, Target};
-use proptest::prelude::*;
+use nfr::{Placement, Scratch, Target};
 use read_fonts::FontRef;
 
-use samples::{ascii, font, gid};
+use samples::{FONTS, ascii, font, gid};
+
+/// The field is evaluated so many times in the height of a cell; between, it is taken as straight.
+const STEPS: usize = 16;
+
+/// A glyph's inside in thin strips, in em: where each strip is, and from where to where it is inside.
+struct Strips {
+    width: f64,
+    inside: Vec<(f64, [f64; 2])>,
+}
+
+/// Where the grid begins and how long it is, in em.
+fn grid(weights: &Weights, scale: Scale, axis: usize) -> [f64; 2] {
+    let [low, high] = [axis, axis + 2].map(|k| f64::from(weights.bounds[k]) / f64::from(scale.units_per_em));
+    [low - f64::from(PADDING), high - low + 2.0 * f64::from(PADDING)]
+}
+
+impl Strips {
+    /// Strips of about `1 / per_em` em.
+    fn of(weights: &Weights, scale: Scale, per_em: f64) -> Self {
+        let [[left, span], [bottom, height]] = [0, 1].map(|axis| grid(weights, scale, axis));
+        let cells = weights.cells.map(usize::from);
+        let count = (span * per_em).ceil() as usize;
+        let mut strips = Self { width: span / count as f64, inside: Vec::new() };
+        for k in 0..count {
+            let share = (k as f64 + 0.5) / count as f64;
+            let column = contracted(weights, share * cells[0] as f64);
+            let value = |step: usize| weighed(&column, step as f64 / STEPS as f64);
+            let y = |step: f64| bottom + step / (cells[1] * STEPS) as f64 * height;
+            let (mut before, mut from) = (value(0), None);
+            for step in 1..=cells[1] * STEPS {
+                let here = value(step);
+                let at = y(step as f64 - here / (here - before));
+                match from {
+                    None if here > 0.0 => from = Some(if before > 0.0 { bottom } else { at }),
+                    Some(from) if here <= 0.0 => strips.inside.push((left + share * span, [from, at])),
+                    _ => {}
+                }
+                from = from.filter(|_| here > 0.0);
+                before = here;
+            }
+            strips.inside.extend(from.map(|from| (left + share * span, [from, bottom + height])));
+        }
+        strips
+    }
+}
+
+/// The coefficients of an upright line through the field, at `u` cells from its left: B-splines along x.
+fn contracted(weights: &Weights, u: f64) -> Vec<f64> {
+    let rows = weights.field.chunks(usize::from(weights.cells[0]) + 2);
+    let em = |row: &[i8]| row.iter().map(|v| f64::from(*v) / f64::from(FIELD_STEPS)).collect::<Vec<_>>();
+    rows.map(|row| weighed(&em(row), u)).collect()
+}
+
+/// Coefficients, each times its B-spline at `at`. Those that are farther off are zero there.
+fn weighed(coefficients: &[f64], at: f64) -> f64 {
+    let near = (at as usize).saturating_sub(1)..(at as usize + 4).min(coefficients.len());
+    near.map(|k| coefficients[k] * spline(at - (k as f64 - 0.5))).sum()
+}
+
+/// The centred quadratic B-spline.
+fn spline(d: f64) -> f64 {
+    match d.abs() {
+        d if d <= 0.5 => 0.75 - d * d,
+        d if d <= 1.5 => 0.5 * (1.5 - d) * (1.5 - d),
+        _ => 0.0,
+    }
+}
 
 /// A model at a size.
 struct Twin<'a> {
@@ -40,11 +103,6 @@ impl Twin<'_> {
         (0..self.scale.sizes()).find(|size| (-0.5..0.5).contains(&off(size)))
     }
 
-    /// The size that displacements belong to.
-    fn grid_size(&self) -> f64 {
-        self.fitted().map_or(self.ppem, |size| self.scale.ppem_of(size) as f64)
-    }
-
     /// What a displacement known for each trained size is at this one.
     fn at_size(&self, value: impl Fn(usize) -> f64) -> f64 {
         self.fitted().map_or(0.0, value)
@@ -57,6 +115,7 @@ impl Twin<'_> {
     /// Plain (em) and hinted (pixels) knot positions.
     fn knots(&self, axis: usize) -> Vec<(f64, f64)> {
         let warp = self.warp(axis);
+        let grid_size = self.fitted().map_or(self.ppem, |size| self.scale.ppem_of(size) as f64);
         let mut knots: Vec<(f64, f64)> = Vec::new();
         for (k, &units) in warp.knots.iter().enumerate() {
             let plain = self.em(units);
@@ -64,7 +123,7 @@ impl Twin<'_> {
                 let hinted = f64::from(warp.hinted[size * warp.knots.len() + k]) / f64::from(WARP_STEPS);
                 hinted - plain * self.scale.ppem_of(size) as f64
             });
-            let hinted = plain * self.grid_size() + moved;
+            let hinted = plain * grid_size + moved;
             let least = knots.last().map_or(f64::NEG_INFINITY, |(_, below)| below + f64::from(MIN_KNOT_GAP));
             knots.push((plain, hinted.max(least)));
         }
@@ -80,146 +139,90 @@ impl Twin<'_> {
         [low + f64::from(BOX_SLACK), high - f64::from(BOX_SLACK)]
     }
 
-    fn unwarp(&self, knots: &[(f64, f64)], at: f64) -> f64 {
-        let (Some(first), Some(last)) = (knots.first(), knots.last()) else { return at / self.ppem };
+    /// The hinted place (pixels) of a plain one (em).
+    fn warped(&self, knots: &[(f64, f64)], at: f64) -> f64 {
+        let (Some(first), Some(last)) = (knots.first(), knots.last()) else { return at * self.ppem };
         for pair in knots.windows(2) {
-            let ((p, h), (next_p, next_h)) = (pair[0], pair[1]);
-            if h <= at && at <= next_h {
-                return p + (at - h) / (next_h - h) * (next_p - p);
+            let ((plain, hinted), (next_plain, next_hinted)) = (pair[0], pair[1]);
+            if plain <= at && at <= next_plain {
+                return hinted + (at - plain) / (next_plain - plain) * (next_hinted - hinted);
             }
         }
-        let end = if at < first.1 { first } else { last };
-        end.0 + (at - end.1) / self.ppem
+        let end = if at < first.0 { first } else { last };
+        end.1 + (at - end.0) * self.ppem
     }
 
-    /// Where the grid begins and how long it is, in em.
-    fn grid(&self, axis: usize) -> [f64; 2] {
-        let [low, high] = [axis, axis + 2].map(|k| self.em(self.weights.bounds[k]));
-        [low - f64::from(PADDING), high - low + 2.0 * f64::from(PADDING)]
-    }
-
-    /// How far the deformation moves a point up, in em.
+    /// How far the deformation moves a plain point down, in pixels.
     fn deformation(&self, x: f64, y: f64) -> f64 {
         let rank = usize::from(self.weights.rank);
-        let node = |axis: usize, q: f64| {
-            let [origin, span] = self.grid(axis);
-            ((q - origin) / span * (DEFORM_NODES - 1) as f64).clamp(0.0, (DEFORM_NODES - 1) as f64)
+        let near = |axis: usize, q: f64| {
+            let [origin, span] = grid(self.weights, self.scale, axis);
+            let at = ((q - origin) / span).clamp(0.0, 1.0) * (DEFORM_NODES - 1) as f64;
+            let hat = move |node: usize| (node, (1.0 - (at - node as f64).abs()).max(0.0));
+            [hat(at as usize), hat((at as usize + 1).min(DEFORM_NODES - 1))]
         };
-        let (u, v) = (node(0, x), node(1, y));
-        let hat = |at: f64, node: usize| (1.0 - (at - node as f64).abs()).max(0.0);
+        let (columns, rows) = (near(0, x), near(1, y));
         let mut sum = 0.0;
         for r in 0..rank {
             let strength = self.at_size(|size| {
                 f64::from(self.weights.embedding[size * rank + r]) / f64::from(EMBEDDING_STEPS)
             });
-            for (row, column) in
-                (0..DEFORM_NODES * DEFORM_NODES).map(|k| (k / DEFORM_NODES, k % DEFORM_NODES))
-            {
-                let pattern =
-                    f64::from(self.weights.patterns[(r * DEFORM_NODES + row) * DEFORM_NODES + column])
-                        / f64::from(PATTERN_STEPS);
-                sum += strength * pattern * hat(u, column) * hat(v, row);
+            for ((row, v), (column, u)) in rows.iter().flat_map(|row| columns.map(|column| (*row, column))) {
+                let node = self.weights.patterns[(r * DEFORM_NODES + row) * DEFORM_NODES + column];
+                sum += strength * f64::from(node) / f64::from(PATTERN_STEPS) * u * v;
             }
         }
-        sum / self.grid_size()
+        sum
     }
 
-    /// The field at a point and its gradient: all coefficients, each times its B-spline.
-    fn field(&self, x: f64, y: f64) -> [f64; 3] {
-        let cells = self.weights.cells.map(usize::from);
-        let per_em = [0, 1].map(|axis| cells[axis] as f64 / self.grid(axis)[1]);
-        let at =
-            |axis: usize, q: f64| ((q - self.grid(axis)[0]) * per_em[axis]).clamp(0.0, cells[axis] as f64);
-        let (u, v) = (at(0, x), at(1, y));
-        let mut result = [0.0; 3];
-        for (k, value) in self.weights.field.iter().enumerate() {
-            let (column, row) = (k % (cells[0] + 2), k / (cells[0] + 2));
-            let (dx, dy) = (u - (column as f64 - 0.5), v - (row as f64 - 0.5));
-            let value = f64::from(*value) / f64::from(FIELD_STEPS);
-            result[0] += value * spline(dx) * spline(dy);
-            result[1] += value * slope(dx) * per_em[0] * spline(dy);
-            result[2] += value * spline(dx) * slope(dy) * per_em[1];
-        }
-        result
-    }
-
-    fn draw(&self, place: Placement) -> Vec<f64> {
-        let n = samples_per_pixel(self.ppem as f32) as i32;
+    /// What is covered of each pixel, in levels.
+    fn draw(&self, strips: &Strips, place: Placement) -> Vec<f64> {
         let knots = [self.knots(0), self.knots(1)];
-        let reach = f64::from(SLOPE_REACH) / f64::from(n);
-        let plain = |axis: usize, at: f64| {
-            let [low, high] = [at - reach, at + reach].map(|at| self.unwarp(&knots[axis], at));
-            ((low + high) / 2.0, (high - low) / (2.0 * reach) * self.ppem)
-        };
-        let mut pixels = Vec::new();
-        for (j, i) in (0..place.height).flat_map(|j| (0..place.width).map(move |i| (j, i))) {
-            let mut sum = 0.0;
-            for (b, a) in (0..n).flat_map(|b| (0..n).map(move |a| (b, a))) {
-                let part = |k: i32| (f64::from(k) + 0.5) / f64::from(n);
-                let (x, slope_x) = plain(0, f64::from(place.left) + f64::from(i) + part(a));
-                let (y, slope_y) = plain(1, f64::from(place.top) - f64::from(j) - part(b));
-                let [value, gx, gy] = self.field(x, y + self.deformation(x, y));
-                sum += area(value * self.ppem * f64::from(n), gx * slope_x, gy * slope_y);
+        let mut pixels = vec![0.0; place.area()];
+        for &(x, ends) in &strips.inside {
+            let columns = [-0.5, 0.5]
+                .map(|side| self.warped(&knots[0], x + side * strips.width) - f64::from(place.left));
+            let rows =
+                ends.map(|y| f64::from(place.top) - self.warped(&knots[1], y) + self.deformation(x, y));
+            for (i, across) in overlaps(columns, place.width) {
+                for (j, down) in overlaps([rows[1], rows[0]], place.height) {
+                    pixels[j * place.width as usize + i] += across * down * 255.0;
+                }
             }
-            pixels.push(sum / f64::from(n * n) * 255.0);
         }
         pixels
     }
 }
 
-/// The centred quadratic B-spline.
-fn spline(d: f64) -> f64 {
-    match d.abs() {
-        d if d <= 0.5 => 0.75 - d * d,
-        d if d <= 1.5 => 0.5 * (1.5 - d) * (1.5 - d),
-        _ => 0.0,
+/// What an interval has in common with the pixels `0..count`.
+fn overlaps([from, to]: [f64; 2], count: u32) -> impl Iterator<Item = (usize, f64)> + Clone {
+    let first = from.clamp(0.0, f64::from(count)) as usize;
+    let last = to.clamp(0.0, f64::from(count)).ceil() as usize;
+    (first..last).map(move |k| (k, (to.min(k as f64 + 1.0) - from.max(k as f64)).max(0.0)))
+}
+
+/// A smooth deformation that moves points by up to about a quarter of a pixel.
+fn deformed(mut weights: Weights) -> Weights {
+    let rank = usize::from(weights.rank);
+    for (k, value) in weights.patterns.iter_mut().enumerate() {
+        let (pattern, row, column) = (k / 64, k / 8 % 8, k % 8);
+        let [u, v] = [row, column].map(|node| node as f32 / (DEFORM_NODES - 1) as f32);
+        let phase = pattern as f32 * 2.1;
+        *value = (PATTERN_STEPS * (phase + 2.5 * u).cos() * (phase * 1.7 + 2.0 * v).sin()).round() as i8;
     }
-}
-
-fn slope(d: f64) -> f64 {
-    match d.abs() {
-        a if a <= 0.5 => -2.0 * d,
-        a if a <= 1.5 => -d.signum() * (1.5 - a),
-        _ => 0.0,
+    for (k, value) in weights.embedding.iter_mut().enumerate() {
+        let (size, pattern) = (k / rank, k % rank);
+        let most = EMBEDDING_STEPS * 0.25 / rank as f32;
+        *value = (most * (size as f32 * 0.7 + pattern as f32).cos()).round() as i8;
     }
-}
-
-/// Area of the unit square around the origin where `value + gx·x + gy·y > 0`: the half-plane that begins at each
-/// corner, added and taken away in turn.
-fn area(value: f64, gx: f64, gy: f64) -> f64 {
-    let a = gx.abs().max(gy.abs()).max(f64::from(MIN_GRADIENT));
-    let b = gx.abs().min(gy.abs()).max(f64::from(MIN_SKEW) * a);
-    let corner = |at: f64| at.max(0.0).powi(2);
-    let (sum, difference) = ((a + b) / 2.0, (a - b) / 2.0);
-    (corner(value + sum) - corner(value + difference) - corner(value - difference) + corner(value - sum))
-        / (2.0 * a * b)
-}
-
-/// Reproducible noise, so that the deformation moves points by up to about half a pixel.
-fn shaken(mut weights: Weights) -> Weights {
-    let mut state = 1u32;
-    let mut noise = |amplitude: i32| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        ((state >> 8) as i32 % (2 * amplitude + 1) - amplitude) as i8
-    };
-    weights.patterns.iter_mut().for_each(|v| *v = noise(16));
-    weights.embedding.iter_mut().for_each(|v| *v = noise(8));
     weights
 }
 
-/// Single precision and rounding to whole levels.
-const LEVELS: f64 = 0.52;
 /// Where an end of the box is this close to a whole pixel (as a share of its distance from the origin), single
 /// precision decides.
 const TIE: f64 = 1e-5;
 
-fn compare(weights: &Weights, scale: Scale, ppem: f32, what: &str) {
-    let model = GridFit::new(weights, scale).unwrap();
-    let place = model.placement(ppem).unwrap();
-    let mut pixels = vec![0; place.area()];
-    model.draw(ppem, place, &mut Scratch::default(), &mut pixels);
-
-    let twin = Twin { weights, scale, ppem: ppem.into() };
+fn compare_placement(twin: &Twin<'_>, place: Placement, what: &str) {
     let [[left, right], [bottom, top]] = [twin.extent(0), twin.extent(1)];
     let (right, top) = (right.ceil().max(left.floor() + 1.0), top.ceil().max(bottom.floor() + 1.0));
     let ours = [place.left, place.top - place.height as i32].map(f64::from);
@@ -231,76 +234,114 @@ fn compare(weights: &Weights, scale: Scale, ppem: f32, what: &str) {
     for (end, found) in [(right, far[0]), (top, far[1])] {
         assert!((found - end).abs() <= 1.0, "{what}: {found} for {end}");
     }
-    for (k, (ours, twin)) in pixels.iter().zip(twin.draw(place)).enumerate() {
-        let difference = (f64::from(*ours) - twin).abs();
-        assert!(difference <= LEVELS, "{what} at {ppem} ppem, pixel {k}: {ours} for {twin}");
-    }
 }
 
-fn compare_font(name: &str, target: Target, sizes: &[f32]) {
-    let data = font(name);
-    let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
-    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 40 };
-    let hinted: Vec<_> = (scale.first_ppem..=scale.last_ppem).map(|s| teacher.at(s).unwrap()).collect();
-    for character in ascii().chars() {
-        let lesson = lesson(&teacher, &hinted, gid(&data, character)).unwrap();
-        let draft = Draft::from_lesson(&lesson, scale, target, Capacity::default(), 1);
-        let weights = shaken(draft.quantise());
-        for ppem in sizes {
-            compare(&weights, scale, *ppem, &format!("{name}, {target}, {character:?}"));
+/// Differences in levels.
+#[derive(Debug, Default, Clone, Copy)]
+struct Differences {
+    largest: f64,
+    sum: f64,
+    pixels: f64,
+}
+
+impl Differences {
+    fn add(&mut self, pixels: &[u8], twin: &[f64]) {
+        for (ours, twin) in pixels.iter().zip(twin) {
+            let difference = (f64::from(*ours) - twin).abs();
+            self.largest = self.largest.max(difference);
+            self.sum += difference;
+            self.pixels += 1.0;
         }
     }
 }
 
-#[test]
-fn the_specification_names_the_constants_that_are_in_use() {
-    let page = include_str!("../spec/nfrt.md");
-    let [a, b, c, d, e] = [10.9, 15.9, 23.9, 95.9, 96.0].map(samples_per_pixel);
-    let (gap, slack) = (1.0 / MIN_KNOT_GAP, 1.0 / BOX_SLACK);
-    for words in [
-        format!("are in 1/{WARP_STEPS} pixel"),
-        format!("G[row][column] = stored / {FIELD_STEPS} "),
-        format!("φ_r[row][column] = stored / {PATTERN_STEPS}\n"),
-        format!("e[s][r] = stored / {EMBEDDING_STEPS} "),
-        format!("a number above 0 and at most {MAX_PPEM}:"),
-        format!("h_(k−1) + 1/{gap})"),
-        format!("floor(l + 1/{slack}) to max(ceil(h − 1/{slack}), floor(l + 1/{slack}) + 1)"),
-        format!("n = {a} below 11 ppem, {b} below 16, {c} below 24, {d} below 96, and {e} from there"),
-        format!("reach = {SLOPE_REACH} / n"),
-        format!("origin = low − {PADDING}, cellsPerEm = c / ((high − low) + 2 · {PADDING})"),
-        format!("· {0}, 0, {0}),", DEFORM_NODES - 1),
-        format!("A = max(|gx|, |gy|, {MIN_GRADIENT})"),
-        format!("B = max(min(|gx|, |gy|), {MIN_SKEW} · A)"),
-        format!("more than {MAX_CELLS} cells, {MAX_KNOTS} knots or rank {MAX_RANK};"),
-        format!("| lastPpem | The largest, `firstPpem` to {MAX_TRAINED_PPEM}. |"),
-        format!("version {MAJOR_VERSION}.{MINOR_VERSION}\n"),
-    ] {
-        assert!(page.contains(&words), "spec/nfrt.md does not say {words:?}");
+/// A size, and how many levels a pixel may differ there: at most, and on average.
+///
+/// Half a level is rounding, a quarter on average. Up to 128 ppem, sides may be 0.03 pixel from the outline, eight
+/// levels of a pixel that they pass through from border to border; and short ones are not cut at knots, where a warp in
+/// x and y bends them. All sizes have the outline in straight pieces of a lattice, 0.008 em long: in a pixel at a sharp
+/// tip, or where two edges nearly meet, what lies between its lines counts, the more the larger the size.
+type Bound = (f32, f64, f64);
+
+/// For targets that are hinted in y. Measured, and a tenth more.
+const SMOOTH: [Bound; 6] = [
+    (7.0, 3.2, 0.34),
+    (8.0, 11.0, 0.61),
+    (10.0, 18.0, 0.55),
+    (13.3, 17.0, 0.48),
+    (20.0, 28.0, 0.63),
+    (24.9, 60.0, 0.64),
+];
+
+/// For those that are hinted in x, too.
+const MONO: [Bound; 6] = [
+    (7.0, 3.2, 0.34),
+    (8.0, 31.0, 1.05),
+    (10.0, 34.0, 0.92),
+    (13.3, 51.0, 0.79),
+    (20.0, 48.0, 0.82),
+    (24.9, 62.0, 0.8),
+];
+
+/// For some letters and all targets.
+const LARGE: [Bound; 9] = [
+    (25.0, 23.0, 0.51),
+    (31.5, 45.0, 0.57),
+    (40.0, 64.0, 0.54),
+    (49.0, 18.0, 0.4),
+    (63.0, 29.0, 0.35),
+    (96.0, 45.0, 0.38),
+    (127.5, 53.0, 0.39),
+    (128.0, 54.0, 0.27),
+    (200.0, 95.0, 0.28),
+];
+
+/// Strips in a pixel: the ends of upright sides are so much of a pixel off, at most half of it.
+const STRIPS_PER_PIXEL: f64 = 64.0;
+
+/// Compares the glyphs of a text at some sizes, the largest last.
+fn compare(name: &str, target: Target, text: &str, bounds: &[Bound]) {
+    let data = font(name);
+    let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
+    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 40 };
+    let hinted: Vec<_> = (scale.first_ppem..=scale.last_ppem).map(|s| teacher.at(s).unwrap()).collect();
+    let finest = f64::from(bounds[bounds.len() - 1].0) * STRIPS_PER_PIXEL;
+    let mut found = vec![Differences::default(); bounds.len()];
+    for character in text.chars() {
+        let lesson = lesson(&teacher, &hinted, gid(&data, character)).unwrap();
+        let weights = deformed(Draft::from_lesson(&lesson, scale, target, Capacity::default(), 1).quantise());
+        let model = GridFit::new(&weights, scale).unwrap();
+        let strips = Strips::of(&weights, scale, finest);
+        for ((ppem, ..), found) in bounds.iter().zip(&mut found) {
+            let twin = Twin { weights: &weights, scale, ppem: f64::from(*ppem) };
+            let place = model.placement(*ppem).unwrap();
+            compare_placement(&twin, place, &format!("{name}, {target}, {character:?} at {ppem} ppem"));
+            let mut pixels = vec![0; place.area()];
+            model.draw(*ppem, place, &mut Scratch::default(), &mut pixels);
+            found.add(&pixels, &twin.draw(&strips, place));
+        }
+    }
+    for ((ppem, largest, mean), found) in bounds.iter().zip(&found) {
+        let Differences { largest: most, sum, pixels } = found;
+        let what = format!("{name}, {target}, {ppem} ppem: {most} at most, {} on average", sum / pixels);
+        assert!(most <= largest && sum / pixels <= *mean, "{what}");
     }
 }
 
 #[test]
-fn every_glyph_hinted_in_y_is_drawn_as_the_specification_says() {
-    compare_font(
-        "LiberationSerif-Regular",
-        Target::Smooth,
-        &[7.5, 8.0, 10.0, 13.3, 20.0, 31.5, 32.0, 42.0, 50.0, 96.0],
-    );
+fn every_glyph_hinted_in_y_is_drawn_as_the_inside_of_its_field() {
+    FONTS.iter().for_each(|name| compare(name, Target::Smooth, &ascii(), &SMOOTH));
 }
 
 #[test]
-fn every_glyph_hinted_in_x_and_y_is_drawn_as_the_specification_says() {
-    compare_font("DejaVuSans", Target::Mono, &[8.0, 11.0, 17.75, 40.0, 43.0]);
+fn every_glyph_hinted_in_x_and_y_is_drawn_as_the_inside_of_its_field() {
+    FONTS.iter().for_each(|name| compare(name, Target::Mono, &ascii(), &MONO));
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) })]
-
-    #[test]
-    fn a_half_plane_covers_what_the_corners_add_up_to(
-        value in -2.0f32..2.0, gx in -2.0f32..2.0, gy in -2.0f32..2.0,
-    ) {
-        let (ours, twin) = (half_plane(value, gx, gy), area(value.into(), gx.into(), gy.into()));
-        prop_assert!((f64::from(ours) - twin).abs() < 1e-4, "{ours} for {twin}");
+#[test]
+fn large_glyphs_are_drawn_as_the_inside_of_their_fields() {
+    for name in FONTS {
+        compare(name, Target::Smooth, "agRSW%&i", &LARGE);
+        compare(name, Target::Mono, "agRSW%&i", &LARGE);
     }
 }

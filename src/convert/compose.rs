@@ -17,7 +17,7 @@ use crate::error::Error;
 use crate::model::compose::{Composed, Part, snapped, unsnapped};
 use crate::model::gridfit::Scale;
 use crate::render::outline::Outline;
-use crate::render::{Bitmap, sum};
+use crate::render::{Bitmap, Placement, union};
 use crate::table::{MAX_PARTS, MAX_SNAP_BYTES};
 
 /// Hinted points may lie this far (pixels) from the part's, moved: a step of what models store.
@@ -267,6 +267,30 @@ impl Fitter<'_, '_> {
     }
 }
 
+/// The bitmap that parts add up to.
+fn sum(parts: &[Bitmap]) -> Bitmap {
+    let placement = parts.iter().fold(Placement::default(), |whole, part| union(whole, part.placement));
+    let mut pixels = vec![0; placement.area()];
+    parts.iter().for_each(|part| add(placement, &mut pixels, part.placement, &part.pixels));
+    Bitmap { placement, pixels }
+}
+
+/// Adds a part's coverage to a bitmap that has room for it. Parts that only touch cover a pixel together, and
+/// where they overlap the ink is full anyway.
+fn add(whole: Placement, pixels: &mut [u8], place: Placement, layer: &[u8]) {
+    if place.area() == 0 {
+        return;
+    }
+    let (row, column) = ((whole.top - place.top) as usize, (place.left - whole.left) as usize);
+    let (width, stride) = (place.width as usize, whole.width as usize);
+    let rows = pixels.chunks_exact_mut(stride).skip(row);
+    for (pixels, layer) in rows.zip(layer.chunks_exact(width)) {
+        for (pixel, more) in pixels[column..column + width].iter_mut().zip(layer) {
+            *pixel = pixel.saturating_add(*more);
+        }
+    }
+}
+
 /// Where a part stands (pixels) at a size of which it has a snap, by its index.
 fn place(part: &Part, size: usize, ppem: usize, units_per_em: u16) -> [f32; 2] {
     [0, 1].map(|axis| {
@@ -380,5 +404,16 @@ mod tests {
         assert_eq!(fit(&[1.0, 2.0, 1.0]), Some(vec![0, 1, 0]));
         assert_eq!(fit(&[1.0, 1.5, 1.0]), None);
         assert_eq!(fit(&[1.0, 200.0, 1.0]), None);
+    }
+
+    #[test]
+    fn coverage_adds_up_to_full_and_no_further() {
+        let part = |left: i32, top: i32, pixels: [u8; 4]| Bitmap {
+            placement: Placement { left, top, width: 2, height: 2 },
+            pixels: pixels.to_vec(),
+        };
+        let whole = sum(&[part(-1, 2, [10, 200, 30, 40]), part(0, 3, [1, 2, 100, 3])]);
+        assert_eq!(whole.placement, Placement { left: -1, top: 3, width: 3, height: 3 });
+        assert_eq!(whole.pixels, [0, 1, 2, 10, 255, 3, 30, 40, 0]);
     }
 }

@@ -3,10 +3,10 @@
 use crate::convert::deform::{self, Sample};
 use crate::convert::distance::signed_distance;
 use crate::convert::teach::{HintedGlyph, Lesson};
-use crate::convert::warp::{self, Warp};
+use crate::convert::warp::{self, Warp, warp_point};
 use crate::model::Target;
 use crate::model::gridfit::{
-    AxisWarp, DEFORM_NODES, FIELD_LIMIT, GridAxis, PADDING, Scale, WARP_STEPS, Weights, unwarp_point,
+    AxisWarp, DEFORM_NODES, FIELD_LIMIT, GridAxis, PADDING, Scale, WARP_STEPS, Weights,
 };
 
 /// How large a glyph's model may become.
@@ -109,8 +109,8 @@ impl Draft {
             let ppem = f32::from(hinted.ppem);
             let at_knots = &self.hinted[1][size * knots.len()..(size + 1) * knots.len()];
             let sample = |(moved, plain): (&[f32; 2], &[f32; 2])| {
-                let y = unwarp_point(&knots, at_knots, ppem, moved[1]);
-                Sample { at: [plain[0], y], by: f64::from((plain[1] - y) * ppem) }
+                let y = warp_point(&knots, at_knots, ppem, plain[1]);
+                Sample { at: *plain, by: f64::from(y - moved[1]) }
             };
             hinted.points.iter().zip(&lesson.outline.points).map(sample).collect()
         };

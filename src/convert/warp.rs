@@ -130,6 +130,19 @@ fn tridiagonal(matrix: &[f64], right: &mut [f64]) {
     }
 }
 
+/// The piecewise-linear map from `knots` (em) to `hinted` (pixels), with the plain scale beyond the ends.
+pub(super) fn warp_point(knots: &[f32], hinted: &[f32], ppem: f32, at: f32) -> f32 {
+    let (Some(&first), Some(&last)) = (knots.first(), knots.last()) else { return at * ppem };
+    if at <= first {
+        return hinted[0] + (at - first) * ppem;
+    }
+    if at >= last {
+        return hinted[hinted.len() - 1] + (at - last) * ppem;
+    }
+    let k = knots.partition_point(|h| *h <= at) - 1;
+    hinted[k] + (at - knots[k]) * ((hinted[k + 1] - hinted[k]) / (knots[k + 1] - knots[k]))
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::collection::vec;

@@ -1,6 +1,6 @@
 //! Glyphs that are put together from the models of others, as accented letters are.
 
-use super::gridfit::Scale;
+use super::gridfit::{Scale, floor};
 use crate::error::Error;
 
 /// What does not snap to pixels stands on a grid of this fraction of a pixel, that of scaled outlines.
@@ -36,7 +36,7 @@ pub fn snapped(offset: i16, ppem: usize, units_per_em: u16) -> i32 {
 
 /// The place in pixels of what does not snap, at an offset in em.
 pub(crate) fn unsnapped(offset: f32, ppem: f32) -> f32 {
-    (offset * ppem * GRID + 0.5).floor() / GRID
+    floor(offset * ppem * GRID + 0.5) as f32 / GRID
 }
 
 /// Where a part stands, ready to evaluate.

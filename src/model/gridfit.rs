@@ -1,12 +1,13 @@
 //! The grid-fit field: a warp in each axis, a low-rank deformation, and a spline whose zero level is the
 //! outline.
 //!
-//! Every operation here is an IEEE 754 addition, subtraction, multiplication, division, comparison or
+//! Every operation in here and in drawing is an IEEE 754 addition, subtraction, multiplication, division, comparison or
 //! conversion in a fixed order, so that the pixels are the same on every machine.
 
 #[cfg(feature = "convert")]
 mod adjust;
 
+use super::contour::{FINEST, Frame, LEVELS, Polygons, Tracer};
 use crate::error::Error;
 use crate::render::Placement;
 
@@ -24,14 +25,10 @@ pub const FIELD_LIMIT: f32 = 0.06;
 pub const PADDING: f32 = 0.03;
 /// Nodes of the deformation's grid along each axis.
 pub const DEFORM_NODES: usize = 8;
-/// Half the distance (in samples) over which the warp's slope is taken.
-pub const SLOPE_REACH: f32 = 0.25;
+/// The most knots of an axis.
+pub const MAX_KNOTS: usize = 32;
 /// Knots keep at least this distance in pixels, so that the warp can be inverted.
 pub const MIN_KNOT_GAP: f32 = 1.0 / 256.0;
-/// Gradients (em per em) below this are raised to it; it bounds how steep an edge of a flat field can look.
-pub const MIN_GRADIENT: f32 = 0.03;
-/// The smaller component of the gradient is at least this share of the larger one.
-pub const MIN_SKEW: f32 = 0.02;
 /// A hinted box may reach this far (pixels) into a pixel without claiming it: half a step of the warp.
 pub const BOX_SLACK: f32 = 1.0 / 64.0;
 /// The largest size that is drawn, in pixels per em.
@@ -122,34 +119,6 @@ pub(crate) fn check_ppem(ppem: f32) -> Result<(), Error> {
     Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_PPEM}")))
 }
 
-/// How many samples a pixel has along each axis: small sizes are supersampled.
-pub fn samples_per_pixel(ppem: f32) -> usize {
-    match ppem {
-        s if s < 11.0 => 6,
-        s if s < 16.0 => 4,
-        s if s < 24.0 => 3,
-        s if s < 96.0 => 2,
-        _ => 1,
-    }
-}
-
-/// Area of a unit pixel on the inner side of a straight edge: `value` is the field at the pixel's centre times
-/// the samples per em, `(gx, gy)` its gradient (em per em). Both in the same unit, so no square root is needed.
-#[inline]
-pub fn half_plane(value: f32, gx: f32, gy: f32) -> f32 {
-    let (ax, ay) = (gx.abs(), gy.abs());
-    let a = ax.max(ay).max(MIN_GRADIENT);
-    let b = ax.min(ay).max(MIN_SKEW * a);
-    let m = value.abs();
-    let outside = if m <= (a - b) * 0.5 {
-        0.5 - m / a
-    } else {
-        let rest = ((a + b) * 0.5 - m).max(0.0);
-        rest * rest / (2.0 * a * b)
-    };
-    if value > 0.0 { 1.0 - outside } else { outside }
-}
-
 /// The grid's geometry along one axis, in em.
 #[derive(Debug, Clone, Copy)]
 pub struct GridAxis {
@@ -168,12 +137,9 @@ impl GridAxis {
         Self { origin: low - PADDING, cells_per_em: cells as f32 / span, cells }
     }
 
-    /// The cell that `q` (em) lies in, and how far into it, 0..1. Positions outside count as on the border.
-    #[inline]
-    pub fn locate(&self, q: f32) -> (usize, f32) {
-        let u = ((q - self.origin) * self.cells_per_em).clamp(0.0, self.cells as f32);
-        let cell = (u as usize).min(self.cells - 1);
-        (cell, u - cell as f32)
+    /// Where a deformation node lies (em).
+    pub fn node(&self, node: usize) -> f32 {
+        self.origin + node as f32 / (DEFORM_NODES - 1) as f32 * self.cells as f32 / self.cells_per_em
     }
 
     /// The deformation node at or below `q` (em), and how far `q` lies towards the next, 0..1.
@@ -193,12 +159,6 @@ pub fn spline(t: f32) -> [f32; 3] {
     [0.5 * s * s, 0.5 + t * s, 0.5 * t * t]
 }
 
-/// Their derivatives.
-#[inline]
-pub fn spline_slope(t: f32) -> [f32; 3] {
-    [t - 1.0, 1.0 - 2.0 * t, t]
-}
-
 /// A glyph's model, ready to evaluate.
 #[derive(Debug, Clone)]
 pub struct GridFit {
@@ -212,18 +172,8 @@ pub struct GridFit {
     rank: usize,
     patterns: Vec<f32>,
     embedding: Vec<f32>,
-}
-
-/// Working memory that evaluation reuses.
-#[derive(Debug, Clone, Default)]
-pub struct Scratch {
-    hinted: [Vec<f32>; 2],
-    deform: Vec<f32>,
-    rows: Vec<[f32; 2]>,
-    column: Vec<[f32; 2]>,
-    sums: Vec<f32>,
-    /// One part of a composed glyph.
-    pub(crate) layer: Vec<u8>,
+    /// The outline, for each of `LEVELS`.
+    levels: [Polygons; LEVELS.len()],
 }
 
 impl GridFit {
@@ -248,6 +198,9 @@ impl GridFit {
             if warp.hinted.len() != warp.knots.len() * sizes || !warp.knots.is_sorted_by(|a, b| a < b) {
                 return wrong("a warp that does not fit its knots");
             }
+            if warp.knots.len() > MAX_KNOTS {
+                return wrong("too many knots");
+            }
         }
         if weights.patterns.len() != rank * DEFORM_NODES * DEFORM_NODES
             || weights.embedding.len() != rank * sizes
@@ -267,7 +220,7 @@ impl GridFit {
         };
         let steps =
             |values: &[i8], steps: f32| values.iter().map(|v| f32::from(*v) / steps).collect::<Vec<_>>();
-        Ok(Self {
+        let mut model = Self {
             scale,
             bounds,
             grid: [0, 1].map(|k| GridAxis::new(bounds[k], bounds[k + 2], usize::from(weights.cells[k]))),
@@ -277,18 +230,72 @@ impl GridFit {
             rank,
             patterns: steps(&weights.patterns, PATTERN_STEPS),
             embedding: steps(&weights.embedding, EMBEDDING_STEPS),
-        })
+            levels: Default::default(),
+        };
+        model.trace();
+        Ok(model)
+    }
+
+    /// Traces the outline.
+    fn trace(&mut self) {
+        let mut levels = std::mem::take(&mut self.levels);
+        if !self.field.is_empty() {
+            Tracer::default().trace(&self.frame(), &mut levels, &LEVELS.map(|(_, tolerance)| tolerance));
+        }
+        self.levels = levels;
+    }
+
+    /// Finds out anew how the patterns move the outline.
+    #[cfg(feature = "convert")]
+    fn locate(&mut self) {
+        let mut levels = std::mem::take(&mut self.levels);
+        levels.iter_mut().for_each(|polygons| polygons.locate(&self.frame()));
+        self.levels = levels;
+    }
+
+    fn frame(&self) -> Frame<'_> {
+        Frame {
+            field: &self.field,
+            grid: self.grid,
+            knots: [&self.knots[0], &self.knots[1]],
+            patterns: &self.patterns,
+        }
+    }
+
+    /// The outline for a size. It is traced into `fresh` if it is not at hand.
+    pub(crate) fn polygons<'a>(
+        &'a self,
+        ppem: f32,
+        tracer: &mut Tracer,
+        fresh: &'a mut Polygons,
+    ) -> &'a Polygons {
+        if let Some(level) = LEVELS.iter().position(|(below, _)| ppem < *below) {
+            return &self.levels[level];
+        }
+        tracer.trace(&self.frame(), std::slice::from_mut(fresh), &[FINEST]);
+        fresh
+    }
+
+    /// Whether there is nothing to draw.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.field.is_empty()
+    }
+
+    /// Knots of an axis in em.
+    pub(crate) fn knots(&self, axis: usize) -> &[f32] {
+        &self.knots[axis]
     }
 
     /// The memory that the model takes, in bytes.
     pub fn memory(&self) -> usize {
         let floats = [&self.field, &self.patterns, &self.embedding].map(Vec::len).iter().sum::<usize>()
             + self.knots.iter().chain(&self.moves).map(Vec::len).sum::<usize>();
-        size_of::<Self>() + floats * size_of::<f32>()
+        let polygons = self.levels.iter().map(Polygons::memory).sum::<usize>();
+        size_of::<Self>() + floats * size_of::<f32>() + polygons
     }
 
     /// Hinted positions in pixels of an axis's knots, ascending.
-    fn hinted_knots(&self, axis: usize, ppem: f32) -> impl Iterator<Item = f32> + '_ {
+    pub(crate) fn hinted_knots(&self, axis: usize, ppem: f32) -> impl Iterator<Item = f32> + '_ {
         let fit = self.scale.fit(ppem);
         let knots = &self.knots[axis];
         let moves = &self.moves[axis][fit.size * knots.len()..];
@@ -322,154 +329,45 @@ impl GridFit {
         }
         let range = |axis: usize| {
             let mut hinted = self.hinted_knots(axis, ppem);
-            let low = hinted.next().unwrap_or(self.bounds[axis] * ppem);
-            let high = hinted.last().unwrap_or(self.bounds[axis + 2] * ppem);
-            let first = (low + origin[axis] + BOX_SLACK).floor() as i32;
-            (first, ((high + origin[axis] - BOX_SLACK).ceil() as i32).max(first.saturating_add(1)))
+            let low = hinted.next();
+            self.pixels(axis, ppem, [low, hinted.last()], origin[axis])
         };
-        let [(left, right), (bottom, top)] = [range(0), range(1)];
-        let place = Placement { left, top, width: right.abs_diff(left), height: top.abs_diff(bottom) };
-        if place.width > MAX_SIDE || place.height > MAX_SIDE {
-            return Err(Error::LimitExceeded(format!(
-                "a bitmap of {}×{} pixels at {ppem} ppem",
-                place.width, place.height
-            )));
-        }
-        Ok(place)
+        placement_of([range(0), range(1)], ppem)
     }
 
-    /// Draws the pixels of `placement` at a size. `pixels` has `placement.area()` bytes, top row first.
-    pub fn draw(&self, ppem: f32, placement: Placement, scratch: &mut Scratch, pixels: &mut [u8]) {
-        self.draw_at(ppem, [0.0; 2], placement, scratch, pixels);
+    /// The whole pixels that hinted knots, the first and the last, span along an axis; `None` where there is none.
+    pub(crate) fn pixels(&self, axis: usize, ppem: f32, ends: [Option<f32>; 2], origin: f32) -> (i32, i32) {
+        let low = ends[0].unwrap_or(self.bounds[axis] * ppem);
+        let high = ends[1].unwrap_or(self.bounds[axis + 2] * ppem);
+        let first = floor(low + origin + BOX_SLACK);
+        (first, floor(-(high + origin - BOX_SLACK)).saturating_neg().max(first.saturating_add(1)))
     }
 
-    /// Draws as `draw` does, with the glyph at `origin` (pixels).
-    pub fn draw_at(
-        &self,
-        ppem: f32,
-        origin: [f32; 2],
-        placement: Placement,
-        scratch: &mut Scratch,
-        pixels: &mut [u8],
-    ) {
-        if self.field.is_empty() || placement.area() == 0 {
-            return;
-        }
-        let n = samples_per_pixel(ppem);
-        let (width, height) = (placement.width as usize, placement.height as usize);
-        for (axis, hinted) in scratch.hinted.iter_mut().enumerate() {
-            hinted.clear();
-            hinted.extend(self.hinted_knots(axis, ppem));
-        }
-        self.mix_patterns(ppem, &mut scratch.deform);
-        let per_em = ppem * n as f32;
-        let mut rows = std::mem::take(&mut scratch.rows);
-        rows.clear();
-        rows.extend((0..height * n).map(|j| {
-            let sample = placement.top as f32 - (j as f32 + 0.5) / n as f32 - origin[1];
-            self.unwarp(1, &scratch.hinted[1], ppem, n, sample)
-        }));
-        scratch.sums.clear();
-        scratch.sums.resize(width * height, 0.0);
-        for i in 0..width * n {
-            let sample = placement.left as f32 + (i as f32 + 0.5) / n as f32 - origin[0];
-            let [x, slope_x] = self.unwarp(0, &scratch.hinted[0], ppem, n, sample);
-            let node_column = self.contract(x, slope_x, &scratch.deform, &mut scratch.column);
-            for (j, &[y, slope_y]) in rows.iter().enumerate() {
-                let coverage = self.sample(y, slope_y, per_em, &node_column, &scratch.column);
-                scratch.sums[(j / n) * width + i / n] += coverage;
-            }
-        }
-        scratch.rows = rows;
-        let level = 255.0 / (n * n) as f32;
-        for (pixel, sum) in pixels.iter_mut().zip(&scratch.sums) {
-            *pixel = (sum * level + 0.5) as u8;
-        }
-    }
-
-    /// The plain coordinate (em) of a hinted one (pixels) and how fast it changes (em per em), taken over the
-    /// middle half of a sample.
-    fn unwarp(&self, axis: usize, hinted: &[f32], ppem: f32, n: usize, at: f32) -> [f32; 2] {
-        let knots = &self.knots[axis];
-        let reach = SLOPE_REACH / n as f32;
-        let (low, high) =
-            (unwarp_point(knots, hinted, ppem, at - reach), unwarp_point(knots, hinted, ppem, at + reach));
-        [(low + high) * 0.5, (high - low) / (2.0 * reach) * ppem]
-    }
-
-    /// The deformation grid (em) at a size.
-    fn mix_patterns(&self, ppem: f32, out: &mut Vec<f32>) {
+    /// The weight of each pattern at a size, in pixels; nothing where nothing is moved.
+    pub(crate) fn strengths(&self, ppem: f32) -> impl Iterator<Item = f32> + '_ {
         let fit = self.scale.fit(ppem);
-        let nodes = DEFORM_NODES * DEFORM_NODES;
-        out.clear();
-        out.resize(nodes, 0.0);
-        for r in 0..self.rank {
-            let weight = self.embedding[fit.size * self.rank + r] * fit.strength / fit.grid;
-            for (sum, value) in out.iter_mut().zip(&self.patterns[r * nodes..(r + 1) * nodes]) {
-                *sum += value * weight;
-            }
-        }
-    }
-
-    /// Contracts the field and the deformation at column `x`: into `column` the spline's coefficients along y
-    /// and those of its x derivative; returns the deformation's nodes along y.
-    fn contract(
-        &self,
-        x: f32,
-        slope_x: f32,
-        deform: &[f32],
-        column: &mut Vec<[f32; 2]>,
-    ) -> [f32; DEFORM_NODES] {
-        let (cell, t) = self.grid[0].locate(x);
-        let (w, d) = (spline(t), spline_slope(t));
-        let scale = self.grid[0].cells_per_em * slope_x;
-        let stride = self.grid[0].cells + 2;
-        column.clear();
-        column.extend(self.field.chunks_exact(stride).map(|row| {
-            let g = [row[cell], row[cell + 1], row[cell + 2]];
-            [w[0] * g[0] + w[1] * g[1] + w[2] * g[2], (d[0] * g[0] + d[1] * g[1] + d[2] * g[2]) * scale]
-        }));
-        let (node, t) = self.grid[0].locate_node(x);
-        let mut nodes = [0.0; DEFORM_NODES];
-        for (out, row) in nodes.iter_mut().zip(deform.chunks_exact(DEFORM_NODES)) {
-            *out = row[node] + (row[node + 1] - row[node]) * t;
-        }
-        nodes
-    }
-
-    /// Coverage of one sample of a contracted column.
-    fn sample(
-        &self,
-        y: f32,
-        slope_y: f32,
-        per_em: f32,
-        nodes: &[f32; DEFORM_NODES],
-        column: &[[f32; 2]],
-    ) -> f32 {
-        let (node, t) = self.grid[1].locate_node(y);
-        let y = y + (nodes[node] + (nodes[node + 1] - nodes[node]) * t);
-        let (cell, t) = self.grid[1].locate(y);
-        let (w, d) = (spline(t), spline_slope(t));
-        let c = [column[cell], column[cell + 1], column[cell + 2]];
-        let value = w[0] * c[0][0] + w[1] * c[1][0] + w[2] * c[2][0];
-        let gx = w[0] * c[0][1] + w[1] * c[1][1] + w[2] * c[2][1];
-        let gy = (d[0] * c[0][0] + d[1] * c[1][0] + d[2] * c[2][0]) * (self.grid[1].cells_per_em * slope_y);
-        half_plane(value * per_em, gx, gy)
+        self.embedding[fit.size * self.rank..][..self.rank].iter().map(move |weight| weight * fit.strength)
     }
 }
 
-/// Inverse of the piecewise-linear map from `knots` (em) to `hinted` (pixels); beyond the ends the map has
-/// the plain scale.
-pub(crate) fn unwarp_point(knots: &[f32], hinted: &[f32], ppem: f32, at: f32) -> f32 {
-    let (Some(&first), Some(&last)) = (hinted.first(), hinted.last()) else { return at / ppem };
-    if at <= first {
-        return knots[0] + (at - first) / ppem;
+/// The placement of a box, from its first pixel to behind its last one along each axis.
+///
+/// # Errors
+///
+/// `LimitExceeded` for one that is larger than `MAX_SIDE` on a side.
+pub(crate) fn placement_of(pixels: [(i32, i32); 2], ppem: f32) -> Result<Placement, Error> {
+    let [(left, right), (bottom, top)] = pixels;
+    let (width, height) = (right.abs_diff(left), top.abs_diff(bottom));
+    if width > MAX_SIDE || height > MAX_SIDE {
+        return Err(Error::LimitExceeded(format!("a bitmap of {width}×{height} pixels at {ppem} ppem")));
     }
-    if at >= last {
-        return knots[knots.len() - 1] + (at - last) / ppem;
-    }
-    let k = hinted.partition_point(|h| *h <= at) - 1;
-    knots[k] + (at - hinted[k]) * ((knots[k + 1] - knots[k]) / (hinted[k + 1] - hinted[k]))
+    Ok(Placement { left, top, width, height })
+}
+
+/// The largest integer that is not above `v`; f32's own is slow where the instruction is not in the baseline.
+pub(super) fn floor(v: f32) -> i32 {
+    let whole = v as i32;
+    whole.saturating_sub(i32::from(whole as f32 > v))
 }
 
 #[cfg(test)]

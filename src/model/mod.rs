@@ -1,6 +1,7 @@
 //! The models as integers: what each stores, and how it evaluates.
 
 pub mod compose;
+pub mod contour;
 pub mod gridfit;
 
 use std::fmt;

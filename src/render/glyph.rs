@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::draw::{Scratch, draw, draw_one};
 use super::{Bitmap, Placement, Setting};
 use crate::error::Error;
 use crate::model::compose::Origin;
-use crate::model::gridfit::{GridFit, MAX_SIDE, Scale, Scratch};
+use crate::model::gridfit::{GridFit, MAX_SIDE, Scale};
 
 /// One glyph, decoded and ready to draw at any size.
 #[derive(Debug, Clone)]
@@ -63,9 +64,13 @@ impl Glyph {
         pixels: &mut [u8],
     ) -> Result<Placement, Error> {
         let setting = setting.into();
+        if let [(model, origin)] = self.parts.as_slice() {
+            let setting = setting.checked()?;
+            return draw_one(model, setting.ppem, place(origin, setting), scratch, pixels);
+        }
         let placement = self.placement(setting)?;
         let pixels = buffer_for(placement, pixels)?;
-        self.draw(setting, placement, scratch, pixels)?;
+        self.draw(setting, placement, scratch, pixels);
         Ok(placement)
     }
 
@@ -78,33 +83,13 @@ impl Glyph {
         let setting = setting.into();
         let placement = self.placement(setting)?;
         let mut pixels = vec![0; placement.area()];
-        self.draw(setting, placement, &mut Scratch::default(), &mut pixels)?;
+        self.draw(setting, placement, &mut Scratch::default(), &mut pixels);
         Ok(Bitmap { placement, pixels })
     }
 
-    fn draw(
-        &self,
-        setting: Setting,
-        placement: Placement,
-        scratch: &mut Scratch,
-        pixels: &mut [u8],
-    ) -> Result<(), Error> {
-        if let [(model, origin)] = self.parts.as_slice() {
-            model.draw_at(setting.ppem, place(origin, setting), placement, scratch, pixels);
-            return Ok(());
-        }
-        pixels.fill(0);
-        let mut layer = std::mem::take(&mut scratch.layer);
-        for (model, origin) in &self.parts {
-            let origin = place(origin, setting);
-            let place = model.placement_at(setting.ppem, origin)?;
-            layer.clear();
-            layer.resize(place.area(), 0);
-            model.draw_at(setting.ppem, origin, place, scratch, &mut layer);
-            add(placement, pixels, place, &layer);
-        }
-        scratch.layer = layer;
-        Ok(())
+    fn draw(&self, setting: Setting, placement: Placement, scratch: &mut Scratch, pixels: &mut [u8]) {
+        let parts = self.parts.iter().map(|(model, origin)| (&**model, place(origin, setting)));
+        draw(&parts, setting.ppem, placement, scratch, pixels);
     }
 
     /// The memory that the models take, in bytes. A model that several glyphs share counts in each of them.
@@ -120,7 +105,7 @@ fn place(origin: &Origin, setting: Setting) -> [f32; 2] {
 }
 
 /// The box around two bitmaps; one without pixels takes no room.
-fn union(a: Placement, b: Placement) -> Placement {
+pub(crate) fn union(a: Placement, b: Placement) -> Placement {
     match (a.area(), b.area()) {
         (0, _) => return b,
         (_, 0) => return a,
@@ -135,31 +120,6 @@ fn union(a: Placement, b: Placement) -> Placement {
         top,
         width: length(right(a).max(right(b)) - i64::from(left)),
         height: length(i64::from(top) - bottom(a).min(bottom(b))),
-    }
-}
-
-/// The bitmap that parts add up to.
-#[cfg(feature = "convert")]
-pub(crate) fn sum(parts: &[Bitmap]) -> Bitmap {
-    let placement = parts.iter().fold(Placement::default(), |whole, part| union(whole, part.placement));
-    let mut pixels = vec![0; placement.area()];
-    parts.iter().for_each(|part| add(placement, &mut pixels, part.placement, &part.pixels));
-    Bitmap { placement, pixels }
-}
-
-/// Adds a part's coverage to a bitmap that has room for it. Parts that only touch cover a pixel together, and
-/// where they overlap the ink is full anyway.
-fn add(whole: Placement, pixels: &mut [u8], place: Placement, layer: &[u8]) {
-    if place.area() == 0 {
-        return;
-    }
-    let (row, column) = ((whole.top - place.top) as usize, (place.left - whole.left) as usize);
-    let (width, stride) = (place.width as usize, whole.width as usize);
-    let rows = pixels.chunks_exact_mut(stride).skip(row);
-    for (pixels, layer) in rows.zip(layer.chunks_exact(width)) {
-        for (pixel, more) in pixels[column..column + width].iter_mut().zip(layer) {
-            *pixel = pixel.saturating_add(*more);
-        }
     }
 }
 
@@ -186,14 +146,5 @@ mod tests {
         let empty = Placement { left: 50, top: 50, ..Placement::default() };
         assert_eq!(union(A, B), Placement { left: -1, top: 3, width: 3, height: 3 });
         assert_eq!((union(A, empty), union(empty, B)), (A, B));
-    }
-
-    #[test]
-    fn coverage_adds_up_to_full_and_no_further() {
-        let whole = union(A, B);
-        let mut pixels = [0; 9];
-        add(whole, &mut pixels, A, &[10, 200, 30, 40]);
-        add(whole, &mut pixels, B, &[1, 2, 100, 3]);
-        assert_eq!(pixels, [0, 1, 2, 10, 255, 3, 30, 40, 0]);
     }
 }

@@ -1,17 +1,20 @@
 //! From a model to pixels.
 
+mod area;
+mod draw;
 mod font;
 mod glyph;
 #[cfg(any(feature = "convert", feature = "fallback"))]
 pub mod outline;
 mod rasterizer;
 
+pub use draw::Scratch;
 pub use font::Font;
 #[cfg(feature = "convert")]
 pub(crate) use font::open;
 pub use glyph::Glyph;
 #[cfg(feature = "convert")]
-pub(crate) use glyph::sum;
+pub(crate) use glyph::union;
 pub use rasterizer::Rasterizer;
 
 use crate::error::Error;

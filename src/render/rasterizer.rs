@@ -1,12 +1,10 @@
 //! Drawing many glyphs: decoded models are kept in a cache whose size the caller sets.
 
-use std::collections::HashMap;
-
+use super::draw::Scratch;
 #[cfg(feature = "fallback")]
 use super::glyph::buffer_for;
 use super::{Bitmap, Font, Glyph, Placement, Setting};
 use crate::error::Error;
-use crate::model::gridfit::Scratch;
 use crate::table::PartsDecoder;
 
 /// Decoded models take up to this many bytes unless the caller says otherwise: about 600 glyphs.
@@ -112,31 +110,58 @@ struct Cache {
     limit: usize,
     bytes: usize,
     clock: u64,
-    glyphs: HashMap<u16, (u64, Glyph)>,
+    /// For each glyph of the font, where it is in `entries`, counted from 1; 0 for one that is not there.
+    places: Vec<u32>,
+    entries: Vec<Entry>,
+}
+
+struct Entry {
+    gid: u16,
+    /// When it was last asked for.
+    used: u64,
+    glyph: Glyph,
 }
 
 impl Cache {
     fn get(&mut self, font: &Font<'_>, parts: &mut PartsDecoder, gid: u16) -> Result<&Glyph, Error> {
         self.clock += 1;
-        if !self.glyphs.contains_key(&gid) {
-            let known = |gid| self.glyphs.get(&gid).and_then(|(_, glyph)| glyph.model());
-            let glyph = font.glyph_with(parts, gid, known)?;
-            let bytes = glyph.memory();
-            while self.bytes + bytes > self.limit && !self.glyphs.is_empty() {
-                self.evict();
-            }
-            self.bytes += bytes;
-            self.glyphs.insert(gid, (self.clock, glyph));
+        let at = match self.find(gid) {
+            Some(at) => at,
+            None => self.load(font, parts, gid)?,
+        };
+        let entry = self.entries.get_mut(at).ok_or(Error::MissingGlyph(gid))?;
+        entry.used = self.clock;
+        Ok(&entry.glyph)
+    }
+
+    fn find(&self, gid: u16) -> Option<usize> {
+        (*self.places.get(usize::from(gid))? as usize).checked_sub(1)
+    }
+
+    fn load(&mut self, font: &Font<'_>, parts: &mut PartsDecoder, gid: u16) -> Result<usize, Error> {
+        let known = |gid| self.entries[self.find(gid)?].glyph.model();
+        let glyph = font.glyph_with(parts, gid, known)?;
+        let bytes = glyph.memory();
+        while self.bytes + bytes > self.limit && !self.entries.is_empty() {
+            self.evict();
         }
-        let (used, glyph) = self.glyphs.get_mut(&gid).ok_or(Error::MissingGlyph(gid))?;
-        *used = self.clock;
-        Ok(glyph)
+        self.bytes += bytes;
+        self.entries.push(Entry { gid, used: self.clock, glyph });
+        if self.places.len() <= usize::from(gid) {
+            self.places.resize(usize::from(gid) + 1, 0);
+        }
+        self.places[usize::from(gid)] = self.entries.len() as u32;
+        Ok(self.entries.len() - 1)
     }
 
     fn evict(&mut self) {
-        let oldest = self.glyphs.iter().min_by_key(|(_, (used, _))| *used).map(|(gid, _)| *gid);
-        if let Some((_, glyph)) = oldest.and_then(|gid| self.glyphs.remove(&gid)) {
-            self.bytes -= glyph.memory();
+        let ages = self.entries.iter().enumerate();
+        let Some((oldest, _)) = ages.min_by_key(|(_, entry)| entry.used) else { return };
+        let entry = self.entries.swap_remove(oldest);
+        self.bytes -= entry.glyph.memory();
+        self.places[usize::from(entry.gid)] = 0;
+        if let Some(moved) = self.entries.get(oldest) {
+            self.places[usize::from(moved.gid)] = oldest as u32 + 1;
         }
     }
 }

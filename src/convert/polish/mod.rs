@@ -10,8 +10,8 @@ mod rate;
 
 use crate::convert::teach::Lesson;
 use crate::error::Error;
-use crate::model::gridfit::{DEFORM_NODES, FIELD_LIMIT, FIELD_STEPS, GridFit, Scale, WARP_STEPS, Weights};
-use judge::{Judge, Regions};
+use crate::model::gridfit::{DEFORM_NODES, FIELD_LIMIT, FIELD_STEPS, GridFit, Scale, Weights};
+use judge::{Judge, Sample};
 use rate::{Plane, WarpRate, embedding_bits};
 
 /// How hard to polish.
@@ -86,12 +86,12 @@ impl Bench {
         &mut self,
         now: i32,
         tries: &mut Vec<i32>,
-        regions: &Regions,
+        sample: &Sample,
         put: impl Fn(&mut Weights, &mut GridFit, i32),
         bits: impl Fn(&Weights) -> f64,
     ) -> Result<(), Error> {
         let worth = self.options.bit_worth;
-        let mut least = self.judge.error(&self.model, regions, f64::INFINITY)? + worth * bits(&self.weights);
+        let mut least = self.judge.error(&self.model, sample, f64::INFINITY)? + worth * bits(&self.weights);
         let mut chosen = now;
         let mut k = 0;
         while let Some(&value) = tries.get(k) {
@@ -102,7 +102,7 @@ impl Bench {
             }
             put(&mut self.weights, &mut self.model, value);
             let price = worth * bits(&self.weights);
-            let total = self.judge.error(&self.model, regions, least - price)? + price;
+            let total = self.judge.error(&self.model, sample, least - price)? + price;
             if total < least {
                 least = total;
                 let beyond = value + (value - chosen).signum();
@@ -139,13 +139,6 @@ impl Bench {
             if tries.is_empty() {
                 continue;
             }
-            // The outermost knots make the box, and one out of order moves those above it.
-            let regions = if k == 0 || k + 1 == count || now <= low || now >= high {
-                Regions::Whole(s)
-            } else {
-                let pixel = |h: i32| h as f32 / WARP_STEPS;
-                self.judge.between(&self.model, s, axis, pixel(low), pixel(high))?
-            };
             let put = |weights: &mut Weights, model: &mut GridFit, value: i32| {
                 let hinted = if axis == 0 { &mut weights.warp_x.hinted } else { &mut weights.warp_y.hinted };
                 hinted[at] = value;
@@ -155,7 +148,7 @@ impl Bench {
                 let hinted = if axis == 0 { &weights.warp_x.hinted } else { &weights.warp_y.hinted };
                 rate.bits(hinted, s, k)
             };
-            self.settle(now, &mut tries, &regions, put, bits)?;
+            self.settle(now, &mut tries, &Judge::at(s), put, bits)?;
         }
         Ok(())
     }
@@ -169,16 +162,13 @@ impl Bench {
             if now == predicted && now.abs() >= FAR_FROM_EDGES {
                 continue;
             }
-            let reach = [0, 1].map(|axis| {
-                self.model.coefficient_reach(axis, if axis == 0 { at % stride } else { at / stride })
-            });
-            let regions = self.judge.around(&self.model, reach, self.round, |_| true)?;
+            let sample = self.judge.share(self.round, |_| true);
             let put = |weights: &mut Weights, model: &mut GridFit, value: i32| {
                 weights.field[at] = value as i8;
                 model.set_field(at, value as i8);
             };
             let bits = |weights: &Weights| Plane { values: &weights.field, stride }.bits(at);
-            self.settle(now, &mut byte_tries(now, predicted), &regions, put, bits)?;
+            self.settle(now, &mut byte_tries(now, predicted), &sample, put, bits)?;
         }
         Ok(())
     }
@@ -191,12 +181,9 @@ impl Bench {
             let own = r * NODES..(r + 1) * NODES;
             let plane = Plane { values: &self.weights.patterns[own.clone()], stride: DEFORM_NODES };
             let (now, predicted) = (i32::from(self.weights.patterns[at]), plane.prediction(node));
-            let reach = [node % DEFORM_NODES, node / DEFORM_NODES];
-            let reach = [0, 1].map(|axis| self.model.node_reach(axis, reach[axis]));
             let embedding = &self.weights.embedding;
-            let regions = self.judge.around(&self.model, reach, self.round, |s| {
-                embedding.get(s * rank + r).is_some_and(|weight| *weight != 0)
-            })?;
+            let moves = |s: usize| embedding.get(s * rank + r).is_some_and(|weight| *weight != 0);
+            let sample = self.judge.share(self.round, moves);
             let put = |weights: &mut Weights, model: &mut GridFit, value: i32| {
                 weights.patterns[at] = value as i8;
                 model.set_pattern(at, value as i8);
@@ -204,7 +191,7 @@ impl Bench {
             let bits = |weights: &Weights| {
                 Plane { values: &weights.patterns[own.clone()], stride: DEFORM_NODES }.bits(node)
             };
-            self.settle(now, &mut byte_tries(now, predicted), &regions, put, bits)?;
+            self.settle(now, &mut byte_tries(now, predicted), &sample, put, bits)?;
         }
         Ok(())
     }
@@ -219,7 +206,7 @@ impl Bench {
                 model.set_embedding(at / rank, at % rank, value as i8);
             };
             let bits = |weights: &Weights| embedding_bits(weights.embedding[at]);
-            self.settle(now, &mut byte_tries(now, 0), &Regions::Whole(at / rank), put, bits)?;
+            self.settle(now, &mut byte_tries(now, 0), &Judge::at(at / rank), put, bits)?;
         }
         Ok(())
     }

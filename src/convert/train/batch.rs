@@ -5,10 +5,11 @@
 
 use burn::tensor::{Device, Int, Tensor, TensorData};
 
+use super::coverage::{SLOPE_REACH, samples_per_pixel};
 use crate::convert::start::Draft;
 use crate::convert::teach::{HintedGlyph, Lesson};
 use crate::error::Error;
-use crate::model::gridfit::{DEFORM_NODES, GridAxis, GridFit, SLOPE_REACH, samples_per_pixel};
+use crate::model::gridfit::{DEFORM_NODES, GridAxis, GridFit};
 use crate::render::Placement;
 
 /// Groups that the sizes are dealt into, each one a spread over the whole range.

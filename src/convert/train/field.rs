@@ -4,10 +4,10 @@ use burn::tensor::{Device, Tensor, TensorData};
 
 use super::batch::{Extent, Group, Lines, Samples};
 use super::beyond::Learnt;
+use super::coverage::{MIN_GRADIENT, MIN_SKEW};
 use crate::convert::start::Draft;
 use crate::model::gridfit::{
-    DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, MIN_GRADIENT, MIN_KNOT_GAP, MIN_SKEW, PATTERN_STEPS,
-    WARP_STEPS,
+    DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, MIN_KNOT_GAP, PATTERN_STEPS, WARP_STEPS,
 };
 
 /// The trained weights of a chunk of glyphs.
@@ -261,7 +261,8 @@ fn draw(columns: &Columns, rows: &Lines, hinted: &Tensor<1>, samples: &Samples) 
     let low = columns.deform.clone().select(0, at.clone());
     let high = columns.deform.clone().select(0, at.add_scalar(1));
     let moved = low.clone() + (high - low) * share;
-    let y = y + moved * samples.per_ppem.clone();
+    // Back through the warp, to first order.
+    let y = y + moved * samples.per_ppem.clone() * slope.clone();
     let v = ((y - samples.origin.clone()) * samples.cells_per_em.clone())
         .clamp_min(0.0)
         .min_pair(samples.cells.clone());
@@ -352,3 +353,6 @@ pub(super) fn loss(
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod twin;

@@ -3,6 +3,7 @@
 mod batch;
 mod beyond;
 mod bounds;
+mod coverage;
 mod field;
 mod smooth;
 

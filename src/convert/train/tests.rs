@@ -4,9 +4,9 @@ use crate::convert::samples::lessons;
 use crate::convert::start::Capacity;
 use crate::convert::teach::HintedGlyph;
 use crate::model::Target;
-use crate::model::gridfit::{GridFit, Scratch};
+use crate::model::gridfit::GridFit;
 use crate::render::outline::Outline;
-use crate::render::{Bitmap, Placement};
+use crate::render::{Bitmap, Placement, Scratch};
 use skrifa::outline::OutlinePen;
 
 fn drafts(lessons: &[Lesson], scale: Scale, target: Target) -> Vec<Draft> {

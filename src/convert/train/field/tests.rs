@@ -1,28 +1,30 @@
 use super::super::beyond::extended;
+use super::twin::Twin;
 use super::*;
 use crate::convert::samples::lessons;
 use crate::convert::start::Capacity;
 use crate::convert::teach::Lesson;
 use crate::convert::train::batch::GROUPS;
 use crate::model::Target;
-use crate::model::gridfit::{GridFit, Scratch};
+use crate::model::gridfit::{GridFit, Scale, Weights};
 use crate::render::{Bitmap, Placement};
 
-/// The renderer rounds to whole levels: half of one.
+/// Bitmaps have whole levels: half of one.
 const ROUNDING: f32 = 0.5 / 255.0;
 /// How far single precision may take the two apart, in a different order of operations.
 const PRECISION: f32 = 1e-3;
 
-/// A lesson that shows what a model draws, border included, instead of what the teacher draws.
-fn own_lesson(lesson: &Lesson, model: &GridFit) -> Lesson {
+/// A lesson that shows what the twin draws, border included, instead of what the teacher draws.
+fn own_lesson(lesson: &Lesson, weights: &Weights, scale: Scale) -> Lesson {
     let mut lesson = lesson.clone();
+    let model = GridFit::new(weights, scale).unwrap();
     for hinted in &mut lesson.sizes {
         let ppem = f32::from(hinted.ppem);
         let p = model.placement(ppem).unwrap();
         let placement =
             Placement { left: p.left - 4, top: p.top + 4, width: p.width + 8, height: p.height + 8 };
-        let mut pixels = vec![0; placement.area()];
-        model.draw(ppem, placement, &mut Scratch::default(), &mut pixels);
+        let twin = Twin { weights, scale, ppem: ppem.into() };
+        let pixels = twin.draw(placement).iter().map(|level| level.round() as u8).collect();
         hinted.bitmap = Bitmap { placement, pixels };
     }
     lesson
@@ -35,7 +37,7 @@ fn shake(draft: &mut Draft) {
     }
 }
 
-/// The largest difference of a pixel between what training evaluates and what the renderer draws, and the number
+/// The largest difference of a pixel between what training evaluates and the twin, and the number
 /// of pixels.
 fn largest_difference(text: &str, target: Target) -> (f32, usize) {
     let device = Device::flex();
@@ -43,11 +45,12 @@ fn largest_difference(text: &str, target: Target) -> (f32, usize) {
     let mut drafts: Vec<Draft> =
         lessons.iter().map(|l| Draft::from_lesson(l, scale, target, Capacity::default(), 1)).collect();
     drafts.iter_mut().for_each(shake);
-    let models: Vec<GridFit> = drafts.iter().map(|d| GridFit::new(&d.quantise(), scale).unwrap()).collect();
+    let stored: Vec<Weights> = drafts.iter().map(Draft::quantise).collect();
+    let models: Vec<GridFit> = stored.iter().map(|w| GridFit::new(w, scale).unwrap()).collect();
     let units = f32::from(scale.units_per_em);
     let (lessons, drafts): (Vec<Lesson>, Vec<Draft>) =
         lessons.iter().zip(&drafts).map(|(l, d)| extended(l, d, units)).unzip();
-    let lessons: Vec<Lesson> = lessons.iter().zip(&models).map(|(l, m)| own_lesson(l, m)).collect();
+    let lessons: Vec<Lesson> = lessons.iter().zip(&stored).map(|(l, w)| own_lesson(l, w, scale)).collect();
     let extent = Extent::of(&drafts, lessons[0].sizes.len());
     assert!(extent.sizes > scale.sizes(), "plain sizes are evaluated, too");
     let learnt = Learnt::new(scale.sizes(), extent, &device);
@@ -73,14 +76,14 @@ fn largest_difference(text: &str, target: Target) -> (f32, usize) {
 }
 
 #[test]
-fn training_evaluates_what_the_renderer_draws() {
+fn training_evaluates_what_the_twin_does() {
     let (largest, pixels) = largest_difference("agiRW%.", Target::Smooth);
     assert!(pixels > 10_000);
     assert!(largest <= ROUNDING + PRECISION, "{largest}");
 }
 
 #[test]
-fn training_evaluates_what_the_renderer_draws_with_a_warp_in_x_too() {
+fn training_evaluates_what_the_twin_does_with_a_warp_in_x_too() {
     let (largest, pixels) = largest_difference("agiRW%.", Target::Mono);
     assert!(pixels > 10_000);
     assert!(largest <= ROUNDING + PRECISION, "{largest}");

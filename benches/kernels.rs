@@ -1,0 +1,64 @@
+//! The steps from a glyph's bytes to its pixels, each by itself.
+//!
+//! `cargo bench --bench kernels`: of the same font and glyphs as the benchmark `render`, and each figure for all of
+//! them. `unpack` decodes the stored integers; `trace` makes a model of them, which is tracing its outline; `place` finds
+//! the box at a size; `fill` puts the outline in place and fills it, from 128 pixels per em on after tracing it anew.
+
+mod font;
+
+use std::error::Error;
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use nfr::model::gridfit::{GridFit, Weights};
+use nfr::table::{TAG, Table};
+use nfr::{Font, Scratch};
+use read_fonts::{FontRef, TableProvider};
+
+use font::{glyphs, neural};
+
+const SIZES: [f32; 4] = [12.0, 24.0, 63.0, 200.0];
+
+fn measure(criterion: &mut Criterion) -> Result<(), Box<dyn Error>> {
+    let data = neural()?;
+    let font = FontRef::new(&data)?;
+    let bytes = font.table_data(TAG).ok_or("the font has no models")?;
+    let table = Table::parse(bytes.as_bytes())?;
+    let scale = table.header().scale(font.head()?.units_per_em());
+    let gids = glyphs(&Font::parse(&data)?)?;
+    let weights = gids.iter().map(|gid| table.weights(*gid, scale)).collect::<Result<Vec<Weights>, _>>()?;
+    let models = weights.iter().map(|w| GridFit::new(w, scale)).collect::<Result<Vec<GridFit>, _>>()?;
+    criterion.bench_function("unpack", |bencher| {
+        bencher.iter(|| gids.iter().for_each(|gid| drop(black_box(table.weights(*gid, scale)))));
+    });
+    criterion.bench_function("trace", |bencher| {
+        bencher.iter(|| weights.iter().for_each(|weights| drop(black_box(GridFit::new(weights, scale)))));
+    });
+    let mut scratch = Scratch::default();
+    let mut pixels = vec![0; 1 << 18];
+    for ppem in SIZES {
+        criterion.bench_function(&format!("place at {ppem} ppem"), |bencher| {
+            bencher.iter(|| models.iter().for_each(|model| drop(black_box(model.placement(ppem)))));
+        });
+        let places = models.iter().map(|model| model.placement(ppem)).collect::<Result<Vec<_>, _>>()?;
+        criterion.bench_function(&format!("fill at {ppem} ppem"), |bencher| {
+            bencher.iter(|| {
+                for (model, place) in models.iter().zip(&places) {
+                    model.draw(ppem, *place, &mut scratch, &mut pixels[..place.area()]);
+                    black_box(&mut pixels);
+                }
+            });
+        });
+    }
+    Ok(())
+}
+
+fn benchmarks(criterion: &mut Criterion) {
+    if let Err(error) = measure(criterion) {
+        eprintln!("error: {error}");
+        std::process::exit(1);
+    }
+}
+
+criterion_group!(kernels, benchmarks);
+criterion_main!(kernels);

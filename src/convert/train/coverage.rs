@@ -1,0 +1,20 @@
+//! How training takes coverage: from a few samples in each pixel, each with a straight edge through it. It has a
+//! gradient everywhere near edges, which exact areas have not.
+
+/// Half the distance (in samples) over which the warp's slope is taken.
+pub(super) const SLOPE_REACH: f32 = 0.25;
+/// Gradients (em per em) below this are raised to it; it bounds how steep an edge of a flat field can look.
+pub(super) const MIN_GRADIENT: f32 = 0.03;
+/// The smaller component of the gradient is at least this share of the larger one.
+pub(super) const MIN_SKEW: f32 = 0.02;
+
+/// How many samples a pixel has along each axis: small sizes are supersampled.
+pub(super) fn samples_per_pixel(ppem: f32) -> usize {
+    match ppem {
+        s if s < 11.0 => 6,
+        s if s < 16.0 => 4,
+        s if s < 24.0 => 3,
+        s if s < 96.0 => 2,
+        _ => 1,
+    }
+}
