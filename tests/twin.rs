@@ -299,6 +299,10 @@ const LARGE: [Bound; 9] = [
 /// Strips in a pixel: the ends of upright sides are so much of a pixel off, at most half of it.
 const STRIPS_PER_PIXEL: f64 = 64.0;
 
+/// As many patterns as the bounds above were measured with, whatever the converter calls for.
+const CAPACITY: Capacity =
+    Capacity { cell: 0.031, knots: 12, knot_gain: 5e-4, rank: 8, least_rank: 2, pattern_gain: 0.01 };
+
 /// Compares the glyphs of a text at some sizes, the largest last.
 fn compare(name: &str, target: Target, text: &str, bounds: &[Bound]) {
     let data = font(name);
@@ -309,7 +313,7 @@ fn compare(name: &str, target: Target, text: &str, bounds: &[Bound]) {
     let mut found = vec![Differences::default(); bounds.len()];
     for character in text.chars() {
         let lesson = lesson(&teacher, &hinted, gid(&data, character)).unwrap();
-        let weights = deformed(Draft::from_lesson(&lesson, scale, target, Capacity::default(), 1).quantise());
+        let weights = deformed(Draft::from_lesson(&lesson, scale, target, CAPACITY, 1).quantise());
         let model = GridFit::new(&weights, scale).unwrap();
         let strips = Strips::of(&weights, scale, finest);
         for ((ppem, ..), found) in bounds.iter().zip(&mut found) {
