@@ -15,10 +15,10 @@ const BITMAPS: &str = "bitmaps.txt";
 const SWEEPS: &str = "sweeps.txt";
 
 /// Sizes at which every glyph is drawn: whole ones and ones between, and ones on both sides of each limit: 8 and 64 ppem,
-/// where the training of two of the fonts begins and ends, and where a pixel gets fewer samples.
-const SIZES: [f32; 18] = [
-    7.0, 7.5, 8.0, 9.0, 10.75, 11.0, 12.5, 13.0, 16.0, 17.25, 24.0, 33.3, 40.0, 63.0, 64.25, 64.5, 100.0,
-    256.0,
+/// where the training of two of the fonts begins and ends, and 25, 50 and 128 ppem, where polygons become finer.
+const SIZES: [f32; 22] = [
+    7.0, 7.5, 8.0, 9.0, 11.0, 12.5, 13.0, 16.0, 17.25, 24.75, 25.0, 33.3, 40.0, 49.75, 50.0, 63.0, 64.25,
+    64.5, 100.0, 127.75, 128.0, 256.0,
 ];
 /// Sizes at which every glyph is drawn with the pen at each of `PENS` too.
 const PEN_SIZES: [f32; 6] = [9.0, 12.5, 13.0, 16.0, 24.0, 40.0];

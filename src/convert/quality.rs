@@ -25,11 +25,11 @@ struct Setting {
 /// From the smallest files to the least error.
 #[rustfmt::skip]
 const SETTINGS: [Setting; 5] = [
-    Setting { cell: 0.055, knots: 6.0,  knot_gain: 1e-2, rank: 4.0,  pattern_gain: 0.1,   smoothness: 1.0, bit_worth: 0.03 },
-    Setting { cell: 0.040, knots: 9.0,  knot_gain: 2e-3, rank: 6.0,  pattern_gain: 0.03,  smoothness: 0.4, bit_worth: 0.012 },
-    Setting { cell: 0.031, knots: 12.0, knot_gain: 5e-4, rank: 8.0,  pattern_gain: 0.01,  smoothness: 0.2, bit_worth: 0.006 },
-    Setting { cell: 0.026, knots: 14.0, knot_gain: 1e-4, rank: 10.0, pattern_gain: 0.004, smoothness: 0.1, bit_worth: 0.003 },
-    Setting { cell: 0.021, knots: 18.0, knot_gain: 2e-5, rank: 12.0, pattern_gain: 0.002, smoothness: 0.05, bit_worth: 0.001 },
+    Setting { cell: 0.055, knots: 6.0,  knot_gain: 1e-2, rank: 4.0,  pattern_gain: 0.025,  smoothness: 1.0, bit_worth: 0.03 },
+    Setting { cell: 0.040, knots: 9.0,  knot_gain: 2e-3, rank: 6.0,  pattern_gain: 0.0075, smoothness: 0.4, bit_worth: 0.012 },
+    Setting { cell: 0.031, knots: 12.0, knot_gain: 5e-4, rank: 8.0,  pattern_gain: 0.0025, smoothness: 0.2, bit_worth: 0.006 },
+    Setting { cell: 0.026, knots: 14.0, knot_gain: 1e-4, rank: 10.0, pattern_gain: 0.001,  smoothness: 0.1, bit_worth: 0.003 },
+    Setting { cell: 0.021, knots: 18.0, knot_gain: 2e-5, rank: 12.0, pattern_gain: 0.0005, smoothness: 0.05, bit_worth: 0.001 },
 ];
 
 impl Quality {

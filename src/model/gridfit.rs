@@ -241,6 +241,7 @@ impl GridFit {
         let mut levels = std::mem::take(&mut self.levels);
         if !self.field.is_empty() {
             Tracer::default().trace(&self.frame(), &mut levels, &LEVELS.map(|(_, tolerance)| tolerance));
+            levels.iter_mut().for_each(Polygons::shrink);
         }
         self.levels = levels;
     }

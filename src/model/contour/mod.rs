@@ -45,6 +45,12 @@ impl Polygons {
             + self.ends.len() * size_of::<u32>()
     }
 
+    /// Gives back what tracing reserved and did not need.
+    pub(crate) fn shrink(&mut self) {
+        self.at.iter_mut().for_each(Vec::shrink_to_fit);
+        self.ends.shrink_to_fit();
+    }
+
     fn clear(&mut self) {
         self.at.iter_mut().for_each(Vec::clear);
         self.ends.clear();
