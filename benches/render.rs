@@ -4,7 +4,8 @@
 //! have the parts and sizes of trained ones: drawing takes the same time, decoding a sixth less. `NFR_BENCH_FONT` names
 //! a converted font to measure instead. Each figure is for one pass over the glyphs of "agRe%@W8", so an eighth of it
 //! is a glyph's. `draw` is a `Rasterizer` that has the models in its cache, box and all; `place` is that box alone;
-//! `decode` goes from a glyph's bytes in the table to a model that is ready to draw.
+//! `decode` goes from a glyph's bytes in the table to a model that is ready to draw; `open and draw one` from a file's bytes
+//! to the pixels of one glyph.
 
 mod font;
 
@@ -42,6 +43,12 @@ fn measure(criterion: &mut Criterion) -> Result<(), Box<dyn Error>> {
             for gid in &gids {
                 black_box(rasterizer.placement(black_box(*gid), 16.0).ok());
             }
+        });
+    });
+    criterion.bench_function("open and draw one", |bencher| {
+        bencher.iter(|| {
+            let font = Font::parse(black_box(&data));
+            font.and_then(|font| Rasterizer::new(&font).render_into(gids[0], 16.0, &mut pixels)).ok()
         });
     });
     criterion.bench_function("decode", |bencher| {

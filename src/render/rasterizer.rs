@@ -7,7 +7,7 @@ use super::{Bitmap, Font, Glyph, Placement, Setting};
 use crate::error::Error;
 use crate::table::PartsDecoder;
 
-/// Decoded models take up to this many bytes unless the caller says otherwise: about 600 glyphs.
+/// Decoded models take up to this many bytes unless the caller says otherwise: about 700 glyphs.
 const DEFAULT_CACHE: usize = 8 << 20;
 
 /// Draws a font's glyphs. With the feature `fallback`, a glyph that has no model is drawn from its unhinted
