@@ -1,8 +1,8 @@
 //! The grid-fit field: a warp in each axis, a low-rank deformation, and a spline whose zero level is the
 //! outline.
 //!
-//! Every operation in here and in drawing is an IEEE 754 addition, subtraction, multiplication, division, comparison or
-//! conversion in a fixed order, so that the pixels are the same on every machine.
+//! Every operation in here and in drawing is an IEEE 754 addition, subtraction, multiplication, division, square root,
+//! comparison or conversion in a fixed order, so that the pixels are the same on every machine.
 
 #[cfg(feature = "convert")]
 mod adjust;

@@ -172,11 +172,9 @@ impl Warp {
         self.straight = knots.is_empty();
         let piece =
             |plain: f32, hinted: f32, scale: f32| [scale * units, (hinted - plain * scale + shift) * units];
-        self.pieces[0] = piece(0.0, 0.0, ppem);
+        let lowest = knots.first().zip(hinted.first());
+        self.pieces[0] = lowest.map_or(piece(0.0, 0.0, ppem), |(plain, hinted)| piece(*plain, *hinted, ppem));
         for k in 0..knots.len() {
-            if k == 0 {
-                self.pieces[0] = piece(knots[0], hinted[0], ppem);
-            }
             let scale = match knots.get(k + 1) {
                 Some(next) => (hinted[k + 1] - hinted[k]) / (next - knots[k]),
                 None => ppem,

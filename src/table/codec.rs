@@ -17,7 +17,7 @@ use crate::model::gridfit::{DEFORM_NODES, FIELD_LIMIT, FIELD_STEPS, PADDING, Sca
 /// The most cells of a field along an axis.
 pub const MAX_CELLS: u8 = 64;
 /// The most knots of an axis.
-pub const MAX_KNOTS: u8 = 32;
+pub const MAX_KNOTS: u8 = crate::model::gridfit::MAX_KNOTS as u8;
 /// The highest rank of a deformation.
 pub const MAX_RANK: u8 = 16;
 

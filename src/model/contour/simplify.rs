@@ -94,9 +94,7 @@ impl Simplifier {
             self.points.push([q[0] + chord[1] * by, q[1] - chord[0] * by]);
         }
     }
-}
 
-impl Simplifier {
     /// Makes sides that are nearly upright upright, and level ones level.
     fn straighten(&mut self, tolerance: f32) {
         let count = self.points.len();
