@@ -10,8 +10,9 @@
 //! # assert!(draw(b"no font").is_err());
 //! ```
 //!
-//! With the default feature `convert`, `convert` trains and writes such fonts and `compare` measures them; without
-//! default features this is the renderer alone. `spec/nfrt.md` in the repository describes the table.
+//! With the default feature `convert`, `convert` trains and writes such fonts and `compare` measures them; with `lab`,
+//! `lab` has the models and experiments of the paper that the idea comes from; without default features this is the
+//! renderer alone. `spec/nfrt.md` in the repository describes the table.
 
 #![forbid(unsafe_code)]
 
@@ -26,6 +27,8 @@ pub mod cli;
 pub mod compare;
 #[cfg(feature = "convert")]
 pub mod convert;
+#[cfg(feature = "lab")]
+pub mod lab;
 
 pub use error::Error;
 pub use model::Target;
