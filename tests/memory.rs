@@ -9,11 +9,14 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use nfr::model::gridfit::{AxisWarp, GridFit, Scale, Weights};
+use nfr::model::network::{Network, Shape};
+use nfr::table::Precision;
 use nfr::table::codec::{MAX_CELLS, MAX_RANK};
+use nfr::table::network::{decode, encode};
 use nfr::{Font, Rasterizer, Scratch, Setting};
 use proptest::prelude::*;
 
-use samples::{ascii, converted, font};
+use samples::{ascii, converted, font, network};
 
 /// Counts what each thread allocates on its own, so that tests beside each other do not disturb each other.
 struct Counting;
@@ -174,5 +177,26 @@ proptest! {
             }
         }
         prop_assert!(PEAK.get() - before <= READING, "{} bytes", PEAK.get() - before);
+    }
+
+    #[test]
+    fn a_damaged_network_does_not_make_the_reader_allocate_more_than_its_bytes_are_worth(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4), narrow in any::<bool>(),
+    ) {
+        let (width, latent) = if narrow { (1, 1) } else { (40, 7) };
+        let shape = Shape { width, latent, encoder: 9, frequencies: true, residual: true };
+        let mut bytes = encode(&network(shape, &[8, 12], 3), Precision::Eight).unwrap();
+        for (at, value) in damage {
+            // Within the shape and the sizes.
+            bytes[at.index(31)] = value;
+        }
+        let before = LIVE.get();
+        PEAK.set(before);
+        if let Ok(weights) = decode(&bytes) {
+            let _network = Network::new(weights).unwrap();
+        }
+        // A weight's byte becomes four, and those of one output are filled up to those of four.
+        let limit = (20 * bytes.len() + 10_000) as isize;
+        prop_assert!(PEAK.get() - before <= limit, "{} bytes of {limit}", PEAK.get() - before);
     }
 }

@@ -129,7 +129,7 @@ proptest! {
         models.sort_by_key(|m| m.gid);
         models.dedup_by_key(|m| m.gid);
         let header = Header { target, outline_hash, seed, steps, knots, rank, cell, ..header(scale) };
-        let (bytes, lengths) = table::write(&header, &models, &[], scale).unwrap();
+        let (bytes, lengths) = table::write(&header, &models, &[], &[], scale).unwrap();
         let table = Table::parse(&bytes).unwrap();
         prop_assert_eq!(table.header(), &header);
         prop_assert_eq!(table.header().scale(scale.units_per_em), scale);
@@ -168,7 +168,7 @@ proptest! {
     ) {
         let header = Header { outlines_dropped, ..header(scale) };
         let models: Vec<_> = (0..3).map(|gid| GlyphModel { gid, weights: Weights::default() }).collect();
-        let (bytes, _) = table::write(&header, &models, &composed, scale).unwrap();
+        let (bytes, _) = table::write(&header, &models, &composed, &[], scale).unwrap();
         let table = Table::parse(&bytes).unwrap();
         prop_assert_eq!(table.header(), &header);
         prop_assert_eq!(table.gids().len(), 3 + composed.len());
@@ -189,7 +189,7 @@ proptest! {
 fn reserved_bytes_are_written_as_0_and_not_read() {
     const RESERVED_AT: usize = 38;
     let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 11 };
-    let (mut bytes, _) = table::write(&header(scale), &[], &[], scale).unwrap();
+    let (mut bytes, _) = table::write(&header(scale), &[], &[], &[], scale).unwrap();
     let reserved = &mut bytes[RESERVED_AT..][..2];
     assert_eq!(reserved, [0, 0]);
     reserved.fill(7);
@@ -201,7 +201,7 @@ fn sizes_that_make_no_range_are_malformed() {
     let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 11 };
     for (first_ppem, last_ppem) in [(0, 11), (12, 11), (8, MAX_TRAINED_PPEM + 1)] {
         let header = Header { first_ppem, last_ppem, ..header(scale) };
-        let (bytes, _) = table::write(&header, &[], &[], scale).unwrap();
+        let (bytes, _) = table::write(&header, &[], &[], &[], scale).unwrap();
         assert!(matches!(Table::parse(&bytes), Err(Error::Malformed(_))), "{first_ppem}–{last_ppem}");
     }
 }
@@ -211,7 +211,7 @@ fn parts_that_readers_would_refuse_are_not_written() {
     let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 10 };
     let models = [GlyphModel { gid: 1, weights: Weights::default() }];
     let write = |part: Part, count: usize| {
-        table::write(&header(scale), &models, &[Composed { gid: 5, parts: vec![part; count] }], scale)
+        table::write(&header(scale), &models, &[Composed { gid: 5, parts: vec![part; count] }], &[], scale)
     };
     let part = Part { gid: 1, ..Part::default() };
     assert!(write(part.clone(), MAX_PARTS).is_ok());
@@ -228,7 +228,7 @@ fn a_part_without_a_model_or_places_is_malformed() {
     let models = [GlyphModel { gid: 1, weights: Weights::default() }];
     let part = Part { gid: 1, ..Part::default() };
     let composed = [Composed { gid: 5, parts: vec![part] }];
-    let (bytes, _) = table::write(&header(scale), &models, &composed, scale).unwrap();
+    let (bytes, _) = table::write(&header(scale), &models, &composed, &[], scale).unwrap();
     // The part's five numbers are the last bytes: the model, the offset, and twice that there are no places.
     let part_at = bytes.len() - 10;
     let parts = |at: usize, number: u16| {
@@ -255,7 +255,7 @@ fn a_model_that_readers_would_refuse_is_not_written() {
         ..Weights::default()
     };
     let write =
-        |weights: Weights| table::write(&header(scale), &[GlyphModel { gid: 7, weights }], &[], scale);
+        |weights: Weights| table::write(&header(scale), &[GlyphModel { gid: 7, weights }], &[], &[], scale);
     assert!(write(fits.clone()).is_ok());
     let refused = |weights: Weights| matches!(write(weights), Err(Error::LimitExceeded(_)));
     // A hundred thousand bytes, and nothing that predicts them.

@@ -1,5 +1,6 @@
 //! `nfr info`: what a neural font carries.
 
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -8,7 +9,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::files::{open_neural, read};
 use crate::convert::select::glyph_count;
-use crate::table;
+use crate::table::{self, Precision};
 
 /// Says what a neural font carries
 #[derive(Debug, clap::Args)]
@@ -33,6 +34,12 @@ struct Info {
     file_bytes: usize,
     outlines_match: bool,
     outlines_dropped: bool,
+    /// How many of the glyphs with models have a network instead.
+    networks: usize,
+    /// The bytes of all networks.
+    network_bytes: usize,
+    /// Bits of their weights, each kind once.
+    network_bits: Vec<u8>,
 }
 
 /// Runs `nfr info`.
@@ -45,9 +52,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (file, font) = open_neural(&args.font, &data)?;
     let (first_ppem, last_ppem) = font.ppem_range();
     let glyphs_with_models = font.modelled_glyphs().count();
+    let networks: Vec<u16> = font.networks().collect();
+    let network_bytes = networks.iter().map(|gid| font.model_len(*gid)).sum::<Result<usize, _>>();
+    let network_bits = networks.iter().map(|gid| font.precision(*gid).map(Precision::bits));
+    let network_bits = network_bits.collect::<Result<BTreeSet<u8>, _>>();
+    // The reader refuses any other major version.
+    let minor = if networks.is_empty() { table::MINOR_VERSION } else { table::NETWORK_MINOR_VERSION };
     let info = Info {
-        // The reader refuses any other major version.
-        version: format!("{}.{}", table::MAJOR_VERSION, table::MINOR_VERSION),
+        version: format!("{}.{minor}", table::MAJOR_VERSION),
         target: font.target().name(),
         first_ppem,
         last_ppem,
@@ -58,6 +70,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         file_bytes: data.len(),
         outlines_match: font.outlines_match(),
         outlines_dropped: font.outlines_dropped(),
+        networks: networks.len(),
+        network_bytes: network_bytes?,
+        network_bits: network_bits?.into_iter().collect(),
     };
     let mut out = io::stdout().lock();
     if args.json {
@@ -69,6 +84,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     writeln!(out, "target          {}", info.target)?;
     writeln!(out, "sizes           {first_ppem}-{last_ppem} ppem")?;
     writeln!(out, "glyphs          {} of {} have models", info.glyphs_with_models, info.glyphs)?;
+    if info.networks > 0 {
+        let bits: Vec<String> = info.network_bits.iter().map(u8::to_string).collect();
+        let bits = bits.join(" and ");
+        writeln!(
+            out,
+            "networks        {}, {} bytes, weights of {bits} bits",
+            info.networks, info.network_bytes
+        )?;
+    }
     writeln!(out, "table           {} bytes, {:.1} per glyph", info.table_bytes, info.bytes_per_glyph)?;
     writeln!(out, "file            {} bytes", info.file_bytes)?;
     let outlines = match (info.outlines_dropped, info.outlines_match) {

@@ -6,6 +6,7 @@ mod compose;
 mod course;
 mod deform;
 mod distance;
+pub mod networks;
 pub mod open;
 pub mod partial;
 pub mod pipeline;
@@ -24,5 +25,6 @@ pub mod teacher;
 pub mod train;
 mod warp;
 
+pub use networks::with_networks;
 pub use pipeline::{Conversion, GlyphReport, Options, Progress, convert, resume};
 pub use quality::Quality;

@@ -181,7 +181,7 @@ pub fn resume(
     let models: Vec<GlyphModel> =
         trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
     judged.extend(course.judge_composed(&models, &plan.composed)?);
-    let (table, _) = table::write(&header, &models, &plan.composed, scale)?;
+    let (table, _) = table::write(&header, &models, &plan.composed, &[], scale)?;
     let mut sums = Sums::default();
     options.gids.iter().filter_map(|gid| judged.get(gid)).for_each(|s| sums.merge(s));
     let dropped = if options.drop_outlines { judged.keys().copied().collect() } else { BTreeSet::new() };

@@ -3,6 +3,7 @@
 pub mod compose;
 pub mod contour;
 pub mod gridfit;
+pub mod network;
 
 use std::fmt;
 use std::str::FromStr;

@@ -11,7 +11,8 @@ use crate::error::Error;
 use crate::model::Target;
 use crate::model::compose::Origin;
 use crate::model::gridfit::{GridFit, Scale};
-use crate::table::{self, Header, PartsDecoder, Table};
+use crate::model::network::Network;
+use crate::table::{self, Header, PartsDecoder, Precision, Table};
 
 /// A font with an `Nfrt` table, borrowed from the file's bytes. Opening it reads headers only.
 #[derive(Clone)]
@@ -70,7 +71,8 @@ impl<'a> Font<'a> {
         self.header().target
     }
 
-    /// The models were trained on every whole size from the first to the last of these, in pixels per em.
+    /// The models were trained on every whole size from the first to the last of these, in pixels per em; networks on
+    /// some of them, which [`Network::sizes`] has.
     pub fn ppem_range(&self) -> (u16, u16) {
         (self.scale.first_ppem, self.scale.last_ppem)
     }
@@ -80,7 +82,7 @@ impl<'a> Font<'a> {
         self.table.table_len()
     }
 
-    /// The bytes that a glyph's model takes in the table.
+    /// The bytes that a glyph's model or network takes in the table.
     ///
     /// # Errors
     ///
@@ -94,14 +96,34 @@ impl<'a> Font<'a> {
         self.glyph_count
     }
 
-    /// The glyphs that have a model, ascending.
+    /// The glyphs that have a model or a network, ascending.
     pub fn modelled_glyphs(&self) -> impl ExactSizeIterator<Item = u16> + use<'a> {
         self.table.gids()
     }
 
-    /// Whether a glyph has a model.
+    /// Whether a glyph has a model or a network.
     pub fn has_model(&self, gid: u16) -> bool {
         self.table.contains(gid)
+    }
+
+    /// The glyphs that have a network, ascending.
+    pub fn networks(&self) -> impl ExactSizeIterator<Item = u16> + use<'a> {
+        self.table.network_gids()
+    }
+
+    /// Whether a glyph is drawn by a network: only at sizes that it was trained for, with the pen on a whole pixel, and
+    /// a thousand times more slowly.
+    pub fn is_network(&self, gid: u16) -> bool {
+        self.table.is_network(gid)
+    }
+
+    /// How the weights of a glyph's network are stored.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` if it has none, `Malformed` if its bytes are damaged.
+    pub fn precision(&self, gid: u16) -> Result<Precision, Error> {
+        self.table.precision(gid)
     }
 
     /// The glyph that the font's character map gives for a character.
@@ -135,7 +157,7 @@ impl<'a> Font<'a> {
         })
     }
 
-    /// Decodes a glyph's model. To draw many glyphs, a [`Rasterizer`](super::Rasterizer) keeps what this
+    /// Decodes a glyph's model or network. To draw many glyphs, a [`Rasterizer`](super::Rasterizer) keeps what this
     /// sets up and throws away.
     ///
     /// # Errors
@@ -159,6 +181,9 @@ impl<'a> Font<'a> {
                 GridFit::new(&weights, self.scale).map(Arc::new)
             }
         };
+        if self.table.is_network(gid) {
+            return Network::new(self.table.network(gid)?).map(Glyph::of_network);
+        }
         if !self.table.is_composed(gid) {
             return Ok(Glyph::of_model(model(gid)?, self.scale));
         }

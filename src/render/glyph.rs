@@ -1,4 +1,4 @@
-//! A glyph that is ready to draw: one model, or several at places of their own.
+//! A glyph that is ready to draw: one model, several at places of their own, or a network.
 
 use std::sync::Arc;
 
@@ -7,27 +7,48 @@ use super::{Bitmap, Placement, Setting};
 use crate::error::Error;
 use crate::model::compose::Origin;
 use crate::model::gridfit::{GridFit, MAX_SIDE, Scale};
+use crate::model::network::Network;
 
-/// One glyph, decoded and ready to draw at any size.
+/// One glyph, decoded and ready to draw: at any size, or, if it is a network, at those that it was trained for.
 #[derive(Debug, Clone)]
-pub struct Glyph {
-    parts: Vec<(Arc<GridFit>, Origin)>,
+pub struct Glyph(Kind);
+
+#[derive(Debug, Clone)]
+enum Kind {
+    Parts(Vec<(Arc<GridFit>, Origin)>),
+    Network(Arc<Network>),
 }
 
 impl Glyph {
     /// A glyph that has a model of its own.
     pub(crate) fn of_model(model: Arc<GridFit>, scale: Scale) -> Self {
-        Self { parts: vec![(model, Origin::zero(scale))] }
+        Self(Kind::Parts(vec![(model, Origin::zero(scale))]))
     }
 
     /// A glyph that is put together from others' models.
     pub(crate) fn of_parts(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
-        Self { parts }
+        Self(Kind::Parts(parts))
+    }
+
+    /// A glyph that a network draws.
+    pub fn of_network(network: Network) -> Self {
+        Self(Kind::Network(Arc::new(network)))
+    }
+
+    /// The network that draws the glyph, if one does.
+    pub fn network(&self) -> Option<&Network> {
+        match &self.0 {
+            Kind::Parts(_) => None,
+            Kind::Network(network) => Some(network),
+        }
     }
 
     /// The first part's model, to be shared with other glyphs.
     pub(super) fn model(&self) -> Option<Arc<GridFit>> {
-        self.parts.first().map(|(model, _)| model.clone())
+        match &self.0 {
+            Kind::Parts(parts) => parts.first().map(|(model, _)| model.clone()),
+            Kind::Network(_) => None,
+        }
     }
 
     /// Where the bitmap lies at a size in pixels per em, or at a [`Setting`].
@@ -35,11 +56,16 @@ impl Glyph {
     /// # Errors
     ///
     /// `InvalidParameter` for a size that is not a positive number or a pen too far off, `LimitExceeded` for a
-    /// bitmap that would be too large.
+    /// bitmap that would be too large, `Unsupported` for a size that the glyph's network was not trained for, or
+    /// a network with the pen between pixels.
     pub fn placement(&self, setting: impl Into<Setting>) -> Result<Placement, Error> {
         let setting = setting.into().checked()?;
+        let parts = match &self.0 {
+            Kind::Parts(parts) => parts,
+            Kind::Network(network) => return network.placement(setting),
+        };
         let mut whole = Placement::default();
-        for (model, origin) in &self.parts {
+        for (model, origin) in parts {
             whole = union(whole, model.placement_at(setting.ppem, place(origin, setting))?);
         }
         if whole.width > MAX_SIDE || whole.height > MAX_SIDE {
@@ -52,7 +78,7 @@ impl Glyph {
     }
 
     /// Draws coverage 0–255 into `pixels`, top row first, `placement.width` bytes a row. Bytes beyond the
-    /// bitmap are left alone. Once `scratch` has grown, nothing is allocated.
+    /// bitmap are left alone. Once `scratch` has grown, nothing is allocated, but a network allocates each time.
     ///
     /// # Errors
     ///
@@ -64,13 +90,15 @@ impl Glyph {
         pixels: &mut [u8],
     ) -> Result<Placement, Error> {
         let setting = setting.into();
-        if let [(model, origin)] = self.parts.as_slice() {
+        if let Kind::Parts(parts) = &self.0
+            && let [(model, origin)] = parts.as_slice()
+        {
             let setting = setting.checked()?;
             return draw_one(model, setting.ppem, place(origin, setting), scratch, pixels);
         }
         let placement = self.placement(setting)?;
         let pixels = buffer_for(placement, pixels)?;
-        self.draw(setting, placement, scratch, pixels);
+        self.draw(setting, placement, scratch, pixels)?;
         Ok(placement)
     }
 
@@ -83,18 +111,34 @@ impl Glyph {
         let setting = setting.into();
         let placement = self.placement(setting)?;
         let mut pixels = vec![0; placement.area()];
-        self.draw(setting, placement, &mut Scratch::default(), &mut pixels);
+        self.draw(setting, placement, &mut Scratch::default(), &mut pixels)?;
         Ok(Bitmap { placement, pixels })
     }
 
-    fn draw(&self, setting: Setting, placement: Placement, scratch: &mut Scratch, pixels: &mut [u8]) {
-        let parts = self.parts.iter().map(|(model, origin)| (&**model, place(origin, setting)));
-        draw(&parts, setting.ppem, placement, scratch, pixels);
+    fn draw(
+        &self,
+        setting: Setting,
+        placement: Placement,
+        scratch: &mut Scratch,
+        pixels: &mut [u8],
+    ) -> Result<(), Error> {
+        match &self.0 {
+            Kind::Parts(parts) => {
+                let parts = parts.iter().map(|(model, origin)| (&**model, place(origin, setting)));
+                draw(&parts, setting.ppem, placement, scratch, pixels);
+                Ok(())
+            }
+            Kind::Network(network) => network.draw(setting.ppem, pixels),
+        }
     }
 
-    /// The memory that the models take, in bytes. A model that several glyphs share counts in each of them.
+    /// The memory that the models or the network take, in bytes. A model that several glyphs share counts in each of
+    /// them.
     pub fn memory(&self) -> usize {
-        self.parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum()
+        match &self.0 {
+            Kind::Parts(parts) => parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum(),
+            Kind::Network(network) => network.memory(),
+        }
     }
 }
 

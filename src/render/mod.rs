@@ -4,6 +4,7 @@ mod area;
 mod draw;
 mod font;
 mod glyph;
+mod network;
 #[cfg(any(feature = "convert", feature = "fallback"))]
 pub mod outline;
 mod rasterizer;
@@ -11,7 +12,7 @@ mod rasterizer;
 pub use draw::Scratch;
 pub use font::Font;
 #[cfg(feature = "convert")]
-pub(crate) use font::open;
+pub(crate) use font::{head_units, open};
 pub use glyph::Glyph;
 #[cfg(feature = "convert")]
 pub(crate) use glyph::union;

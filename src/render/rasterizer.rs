@@ -10,7 +10,7 @@ use crate::table::PartsDecoder;
 /// Decoded models take up to this many bytes unless the caller says otherwise: about 700 glyphs.
 const DEFAULT_CACHE: usize = 8 << 20;
 
-/// Draws a font's glyphs. With the feature `fallback`, a glyph that has no model is drawn from its unhinted
+/// Draws a font's glyphs. A glyph that a network draws is there at the network's sizes only. With the feature `fallback`, a glyph that has no model is drawn from its unhinted
 /// outline; without it, such a glyph is [`Error::MissingGlyph`].
 pub struct Rasterizer<'a> {
     font: Font<'a>,
@@ -42,7 +42,8 @@ impl<'a> Rasterizer<'a> {
     ///
     /// `MissingGlyph` for a glyph without a model (with `fallback`: for one that the font does not have),
     /// `Malformed` for a damaged one, `InvalidParameter` for a size that is not a positive number or a pen too far
-    /// off, `LimitExceeded` for a bitmap that would be too large.
+    /// off, `LimitExceeded` for a bitmap that would be too large, `Unsupported` for a size that the glyph's network
+    /// was not trained for, or a network with the pen between pixels.
     pub fn placement(&mut self, gid: u16, setting: impl Into<Setting>) -> Result<Placement, Error> {
         let setting = setting.into();
         #[cfg(feature = "fallback")]
@@ -53,7 +54,8 @@ impl<'a> Rasterizer<'a> {
     }
 
     /// Draws a glyph's coverage, 0–255, into `pixels`: top row first, `placement.width` bytes a row. Bytes
-    /// beyond the bitmap are left alone. A glyph that is in the cache is drawn without allocating.
+    /// beyond the bitmap are left alone. A glyph that is in the cache is drawn without allocating, unless it is a
+    /// network: the largest that a table can hold takes 70 MB and a dozen seconds for a bitmap of 128 pixels.
     ///
     /// # Errors
     ///

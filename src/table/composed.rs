@@ -33,8 +33,8 @@ fn truncated() -> Error {
 }
 
 impl<'a> ComposedGlyphs<'a> {
-    /// Finds the arrays, which begin at `at`.
-    pub(super) fn parse(data: FontData<'a>, at: usize) -> Result<Self, Error> {
+    /// Finds the arrays, which begin at `at`. Says where they end, too.
+    pub(super) fn parse(data: FontData<'a>, at: usize) -> Result<(Self, usize), Error> {
         let u16_at = |at| data.read_at::<u16>(at).map_err(|_| truncated());
         let u32_at = |at| data.read_at::<u32>(at).map_err(|_| truncated());
         let count = usize::from(u16_at(COUNTS_AT)?);
@@ -47,13 +47,14 @@ impl<'a> ComposedGlyphs<'a> {
         let parts_at = after(ends_at, count, 4)?;
         let snaps_at = after(parts_at, part_count, 2 * PART_NUMBERS)?;
         let end = after(snaps_at, snap_bytes, 1)?;
-        Ok(Self {
+        let composed = Self {
             gids: data.read_array(at..ends_at).map_err(|_| truncated())?,
             ends: data.read_array(ends_at..parts_at).map_err(|_| truncated())?,
             parts: data.read_array(parts_at..snaps_at).map_err(|_| truncated())?,
             snap_count,
             snaps: data.as_bytes().get(snaps_at..end).ok_or_else(truncated)?,
-        })
+        };
+        Ok((composed, end))
     }
 
     pub(super) fn gids(&self) -> &'a [BigEndian<u16>] {
@@ -131,38 +132,3 @@ impl<'a> ComposedGlyphs<'a> {
             .collect()
     }
 }
-
-/// Two ascending lists of glyphs, merged.
-#[derive(Debug, Clone)]
-pub struct Gids<'a> {
-    a: &'a [BigEndian<u16>],
-    b: &'a [BigEndian<u16>],
-}
-
-impl<'a> Gids<'a> {
-    pub(super) fn new(a: &'a [BigEndian<u16>], b: &'a [BigEndian<u16>]) -> Self {
-        Self { a, b }
-    }
-}
-
-impl Iterator for Gids<'_> {
-    type Item = u16;
-
-    fn next(&mut self) -> Option<u16> {
-        let from = match (self.a.first(), self.b.first()) {
-            (Some(a), Some(b)) if b.get() < a.get() => &mut self.b,
-            (Some(_), _) => &mut self.a,
-            (None, _) => &mut self.b,
-        };
-        let (first, rest) = from.split_first()?;
-        *from = rest;
-        Some(first.get())
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = self.a.len() + self.b.len();
-        (left, Some(left))
-    }
-}
-
-impl ExactSizeIterator for Gids<'_> {}

@@ -5,6 +5,9 @@ mod composed;
 mod contexts;
 #[cfg(feature = "convert")]
 mod cost;
+mod gids;
+pub mod network;
+mod networks;
 mod priors;
 mod range;
 mod reader;
@@ -12,12 +15,13 @@ mod warp;
 #[cfg(feature = "convert")]
 mod writer;
 
-pub use composed::Gids;
 #[cfg(feature = "convert")]
 pub use cost::{Cost, cost, learn_priors};
+pub use gids::Gids;
+pub use network::Precision;
 pub use reader::{PartsDecoder, Table};
 #[cfg(feature = "convert")]
-pub use writer::{GlyphModel, write};
+pub use writer::{GlyphModel, GlyphNetwork, write};
 
 use crate::model::Target;
 use crate::model::gridfit::Scale;
@@ -27,14 +31,19 @@ use read_fonts::types::Tag;
 pub const TAG: Tag = Tag::new(b"Nfrt");
 /// The layout that this crate reads and writes. Readers refuse other major versions.
 pub const MAJOR_VERSION: u16 = 1;
-/// Additions that older readers can ignore count this up.
+/// Additions that older readers can ignore count this up. A table says what it has: this, or
+/// [`NETWORK_MINOR_VERSION`].
 pub const MINOR_VERSION: u16 = 0;
+/// The minor version of a table that has networks.
+pub const NETWORK_MINOR_VERSION: u16 = 1;
 /// Bytes before the arrays.
 pub(crate) const HEADER_LEN: usize = 52;
 /// The table says where every model of so many begins.
 pub(crate) const BLOCK: usize = 64;
 /// The flag that says that outlines were dropped.
 pub(crate) const OUTLINES_DROPPED: u8 = 1;
+/// The flag that says that networks follow the lists of places.
+pub(crate) const NETWORKS: u8 = 2;
 /// No glyph is put together from more parts than this.
 pub const MAX_PARTS: usize = 16;
 /// The places of parts that snap take no more than this, unpacked.

@@ -4,13 +4,14 @@ use read_fonts::FontData;
 use read_fonts::types::BigEndian;
 
 use super::{
-    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_SNAP_BYTES, MAX_TRAINED_PPEM, OUTLINES_DROPPED, codec,
-    composed::{ComposedGlyphs, Gids},
+    BLOCK, Gids, HEADER_LEN, Header, MAJOR_VERSION, MAX_SNAP_BYTES, MAX_TRAINED_PPEM, NETWORKS,
+    OUTLINES_DROPPED, codec, composed::ComposedGlyphs, network, networks::Networks,
 };
 use crate::error::Error;
 use crate::model::Target;
 use crate::model::compose::Part;
 use crate::model::gridfit::{Scale, Weights};
+use crate::model::network::NetworkWeights;
 
 /// An `Nfrt` table, borrowed from the font's bytes.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +24,7 @@ pub struct Table<'a> {
     /// Where the models of each block begin.
     blocks: &'a [BigEndian<u32>],
     composed: ComposedGlyphs<'a>,
+    networks: Networks<'a>,
     payload: &'a [u8],
 }
 
@@ -82,6 +84,8 @@ impl<'a> Table<'a> {
         let blocks_at = lengths_at + 2 * count;
         let payload_at = blocks_at + 4 * count.div_ceil(BLOCK);
         let composed_at = payload_at.checked_add(payload_len).ok_or_else(truncated)?;
+        let (composed, networks_at) = ComposedGlyphs::parse(data, composed_at)?;
+        let has_networks = u8_at(5)? & NETWORKS != 0;
         let table = Self {
             header,
             len: bytes.len(),
@@ -89,7 +93,8 @@ impl<'a> Table<'a> {
             lengths: data.read_array(lengths_at..blocks_at).map_err(|_| truncated())?,
             blocks: data.read_array(blocks_at..payload_at).map_err(|_| truncated())?,
             payload: bytes.get(payload_at..composed_at).ok_or_else(truncated)?,
-            composed: ComposedGlyphs::parse(data, composed_at)?,
+            composed,
+            networks: if has_networks { Networks::parse(data, networks_at)? } else { Networks::default() },
         };
         Ok(table)
     }
@@ -104,19 +109,29 @@ impl<'a> Table<'a> {
         self.len
     }
 
-    /// The glyphs that can be drawn, ascending: with a model of their own, or put together from others.
+    /// The glyphs that can be drawn, ascending: with a model of their own, put together from others, or with a network.
     pub fn gids(&self) -> Gids<'a> {
-        Gids::new(self.gids, self.composed.gids())
+        Gids::new([self.gids, self.composed.gids(), self.networks.gids()])
+    }
+
+    /// The glyphs that have a network, ascending.
+    pub fn network_gids(&self) -> Gids<'a> {
+        Gids::new([&[], &[], self.networks.gids()])
     }
 
     /// Whether a glyph can be drawn.
     pub fn contains(&self, gid: u16) -> bool {
-        self.find(gid).is_some() || self.is_composed(gid)
+        self.find(gid).is_some() || self.is_composed(gid) || self.is_network(gid)
     }
 
     /// Whether a glyph is put together from the models of others.
     pub fn is_composed(&self, gid: u16) -> bool {
         self.composed.find(gid).is_some()
+    }
+
+    /// Whether a glyph has a network.
+    pub fn is_network(&self, gid: u16) -> bool {
+        self.networks.find(gid).is_some()
     }
 
     fn find(&self, gid: u16) -> Option<usize> {
@@ -138,15 +153,16 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// The bytes that a glyph's packed model takes, or the list of its parts.
+    /// The bytes that a glyph's packed model or its network takes, or the list of its parts.
     ///
     /// # Errors
     ///
     /// `MissingGlyph`, or `Malformed` for an entry that points nowhere.
     pub fn model_len(&self, gid: u16) -> Result<usize, Error> {
-        match self.composed.find(gid) {
-            Some(index) => self.composed.len_of(index),
-            None => self.packed(gid).map(<[u8]>::len),
+        match (self.networks.find(gid), self.composed.find(gid)) {
+            (Some(index), _) => self.networks.packed(index).map(<[u8]>::len),
+            (None, Some(index)) => self.composed.len_of(index),
+            (None, None) => self.packed(gid).map(<[u8]>::len),
         }
     }
 
@@ -157,6 +173,28 @@ impl<'a> Table<'a> {
     /// `MissingGlyph` if the glyph has no model, `Malformed` or `LimitExceeded` if its bytes are damaged.
     pub fn weights(&self, gid: u16, scale: Scale) -> Result<Weights, Error> {
         codec::decode(self.packed(gid)?, scale)
+    }
+
+    /// A glyph's network.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` if the glyph has none, `Malformed` or `LimitExceeded` if its bytes are damaged.
+    pub fn network(&self, gid: u16) -> Result<NetworkWeights, Error> {
+        network::decode(self.packed_network(gid)?)
+    }
+
+    /// How the weights of a glyph's network are stored.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::network`].
+    pub fn precision(&self, gid: u16) -> Result<network::Precision, Error> {
+        network::precision(self.packed_network(gid)?)
+    }
+
+    fn packed_network(&self, gid: u16) -> Result<&'a [u8], Error> {
+        self.networks.packed(self.networks.find(gid).ok_or(Error::MissingGlyph(gid))?)
     }
 }
 

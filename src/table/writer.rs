@@ -1,19 +1,25 @@
 //! Writing the table.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::composed::{COUNTS_AT, NO_SNAPS};
+use super::network::{self, Precision};
 use super::{
-    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_PARTS, MAX_SNAP_BYTES, MINOR_VERSION, OUTLINES_DROPPED,
-    codec,
+    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_PARTS, MAX_SNAP_BYTES, MINOR_VERSION,
+    NETWORK_MINOR_VERSION, NETWORKS, OUTLINES_DROPPED, codec,
 };
 use crate::error::Error;
 use crate::model::Target;
 use crate::model::compose::{Composed, Origin};
 use crate::model::gridfit::{Scale, Weights};
+use crate::model::network::NetworkWeights;
 
 /// No packed model is longer than this: the table stores lengths in 16 bits.
 const MAX_MODEL_BYTES: usize = u16::MAX as usize;
+
+/// Where the header has what networks change.
+const MINOR_VERSION_AT: usize = 2;
+const FLAGS_AT: usize = 5;
 
 /// One glyph for the table.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,17 +30,30 @@ pub struct GlyphModel {
     pub weights: Weights,
 }
 
-/// Writes a table. `models` and `composed` are in ascending order of their glyphs, and every part has a model.
-/// Returns the table and the length of each packed model.
+/// One glyph's network for the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GlyphNetwork {
+    /// The glyph.
+    pub gid: u16,
+    /// Its numbers.
+    pub weights: NetworkWeights,
+    /// How its weights are stored.
+    pub precision: Precision,
+}
+
+/// Writes a table. `models`, `composed` and `networks` are in ascending order of their glyphs, and every part has a
+/// model. Returns the table and the length of each packed model.
 ///
 /// # Errors
 ///
-/// `LimitExceeded` for a model or parts that readers would refuse, `InvalidParameter` for a part without a model
-/// or with the wrong number of places.
+/// `LimitExceeded` for a model, parts or a network that readers would refuse, `InvalidParameter` for a part without a
+/// model or with the wrong number of places, for a network that contradicts itself, or one of a glyph that is there
+/// already.
 pub fn write(
     header: &Header,
     models: &[GlyphModel],
     composed: &[Composed],
+    networks: &[GlyphNetwork],
     scale: Scale,
 ) -> Result<(Vec<u8>, Vec<usize>), Error> {
     let packed = models.iter().map(|m| pack(m, scale)).collect::<Result<Vec<_>, _>>()?;
@@ -50,6 +69,11 @@ pub fn write(
     }
     out.extend(packed.iter().flatten());
     put_composed(&mut out, models, composed, scale)?;
+    if !networks.is_empty() {
+        let others: HashSet<u16> =
+            models.iter().map(|m| m.gid).chain(composed.iter().map(|g| g.gid)).collect();
+        put_networks(&mut out, &others, networks)?;
+    }
     Ok((out, packed.iter().map(Vec::len).collect()))
 }
 
@@ -146,5 +170,34 @@ fn put_composed(
     out.extend(ends);
     out.extend(parts);
     out.extend(packed);
+    Ok(())
+}
+
+/// Appends the networks, none of which is of a glyph in `others`, and says in the header that they are there.
+fn put_networks(out: &mut Vec<u8>, others: &HashSet<u16>, networks: &[GlyphNetwork]) -> Result<(), Error> {
+    let mut last = None;
+    for network in networks {
+        if others.contains(&network.gid) || last >= Some(network.gid) {
+            return Err(Error::InvalidParameter(format!(
+                "the network of glyph {} is out of order, or the glyph is in the table already",
+                network.gid
+            )));
+        }
+        last = Some(network.gid);
+    }
+    let (mut ends, mut payload) = (Vec::new(), Vec::new());
+    for network in networks {
+        payload.extend(network::encode(&network.weights, network.precision)?);
+        let end = u32::try_from(payload.len()).map_err(|_| {
+            Error::LimitExceeded("networks of more than 4 GiB; store fewer, or narrower ones".into())
+        })?;
+        ends.extend(end.to_be_bytes());
+    }
+    out[MINOR_VERSION_AT..][..2].copy_from_slice(&NETWORK_MINOR_VERSION.to_be_bytes());
+    out[FLAGS_AT] |= NETWORKS;
+    out.extend((networks.len() as u16).to_be_bytes());
+    out.extend(networks.iter().flat_map(|network| network.gid.to_be_bytes()));
+    out.extend(ends);
+    out.extend(payload);
     Ok(())
 }

@@ -7,7 +7,7 @@ use crate::model::gridfit::{
     WARP_STEPS,
 };
 use crate::table::codec::{MAX_CELLS, MAX_RANK};
-use crate::table::{MAJOR_VERSION, MAX_TRAINED_PPEM, MINOR_VERSION};
+use crate::table::{MAJOR_VERSION, MAX_TRAINED_PPEM, NETWORK_MINOR_VERSION};
 
 /// A frame without knots or patterns: a grid over a box from (0, 0), and coefficients that are what `value` says at
 /// their places.
@@ -195,7 +195,7 @@ fn the_specification_names_the_constants_that_are_in_use() {
         format!("above 1/{0} and below 1 − 1/{0} count", 1.0 / MIN_CUT),
         format!("more than {MAX_CELLS} cells, {MAX_KNOTS} knots or rank {MAX_RANK};"),
         format!("| lastPpem | The largest, `firstPpem` to {MAX_TRAINED_PPEM}. |"),
-        format!("version {MAJOR_VERSION}.{MINOR_VERSION}\n"),
+        format!("version {MAJOR_VERSION}.{NETWORK_MINOR_VERSION}\n"),
     ] {
         assert!(page.contains(&words), "spec/nfrt.md does not say {words:?}");
     }

@@ -1,0 +1,217 @@
+//! From a network's numbers to the pixels of a box.
+
+use std::ops::Range;
+
+use wide::f32x8;
+
+use super::dense::{LANES, Layer, relu};
+use super::encoding::{encode, tanh};
+use super::norm::norm;
+use super::{CLASSES, NORMS, NetworkSize, NetworkWeights, Norm, OUT, Shape, TRUNK_LAYERS, is_conditioned};
+use crate::error::Error;
+
+/// Tiles of eight pixels that a stage takes together, so that the widest layers' stay in a cache.
+const BLOCK: usize = 8;
+/// The trunk's layers, in stages: a batch norm stands behind each but the last, and needs all pixels.
+const STAGES: [Range<usize>; NORMS + 1] = [0..2, 2..5, 5..9, 9..11];
+
+/// A coordinate of the pixels number `index` of `side` along an axis, from −1 to 1.
+pub fn coordinate(index: usize, side: usize) -> f64 {
+    -1.0 + (2 * index + 1) as f64 / side as f64
+}
+
+/// A coordinate, or the condition, with its waves if the shape has them.
+fn waved(shape: &Shape, value: f64) -> Vec<f32> {
+    let mut numbers = vec![value as f32];
+    if shape.frequencies {
+        numbers.extend(encode(value).map(|wave| wave as f32));
+    }
+    numbers
+}
+
+/// What a network is given for the pixel in a row (from the top) and a column of a box of `side` pixels:
+/// [`Shape::positions`] numbers, y and x and then their waves.
+pub fn positions(shape: &Shape, row: usize, column: usize, side: usize) -> Vec<f32> {
+    let [y, x] = [row, column].map(|index| waved(shape, coordinate(index, side)));
+    position(&y, &x).collect()
+}
+
+fn position<'a>(y: &'a [f32], x: &'a [f32]) -> impl Iterator<Item = f32> + 'a {
+    [y[0], x[0]].into_iter().chain(y[1..].iter().copied()).chain(x[1..].iter().copied())
+}
+
+/// What the encoder is given for the size number `index` of `count`: [`Shape::condition`] numbers.
+pub fn condition(shape: &Shape, index: usize, count: usize) -> Vec<f32> {
+    waved(shape, index as f64 / count as f64)
+}
+
+/// A network, ready to evaluate.
+#[derive(Debug, Clone)]
+pub struct Network {
+    shape: Shape,
+    sizes: Vec<NetworkSize>,
+    encoder: Vec<Layer>,
+    trunk: Vec<Layer>,
+    norms: Vec<Norm>,
+}
+
+impl Network {
+    /// Makes a network of its numbers.
+    ///
+    /// # Errors
+    ///
+    /// As [`NetworkWeights::check`].
+    pub fn new(weights: NetworkWeights) -> Result<Self, Error> {
+        weights.check()?;
+        let NetworkWeights { shape, sizes, dense, norms } = weights;
+        let encoders = dense.len() - TRUNK_LAYERS;
+        let latent = |layer: usize| if is_conditioned(layer) { usize::from(shape.latent) } else { 0 };
+        // One after the other, so that a layer's numbers are there only once but for the one in the works.
+        let mut dense = dense.into_iter();
+        let encoder = dense.by_ref().take(encoders).map(|dense| Layer::new(dense, 0)).collect();
+        let trunk = dense.enumerate().map(|(k, dense)| Layer::new(dense, latent(k))).collect();
+        Ok(Self { shape, sizes, encoder, trunk, norms })
+    }
+
+    /// How it is built.
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// The sizes that it was trained for.
+    pub fn sizes(&self) -> &[NetworkSize] {
+        &self.sizes
+    }
+
+    /// The memory that the network takes, in bytes.
+    pub fn memory(&self) -> usize {
+        let layers = self.encoder.iter().chain(&self.trunk).map(Layer::memory).sum::<usize>();
+        let norms =
+            self.norms.iter().flat_map(|norm| [&norm.gamma, &norm.beta]).map(Vec::capacity).sum::<usize>();
+        size_of::<Self>() + layers + norms * size_of::<f32>() + size_of_val(self.sizes.as_slice())
+    }
+
+    /// The coverage, 0–255, of all `side`² pixels of the box at the size number `index` of [`Self::sizes`], top row
+    /// first.
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter` for a size that the network does not have.
+    pub fn levels(&self, index: usize) -> Result<Vec<u8>, Error> {
+        Ok(self.scores(index)?.iter().map(level).collect())
+    }
+
+    /// The scores of the classes of coverage, of which the highest is drawn, for all `side`² pixels of the box at the
+    /// size number `index`, top row first.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::levels`].
+    pub fn scores(&self, index: usize) -> Result<Vec<[f32; CLASSES]>, Error> {
+        let size = self.sizes.get(index).ok_or_else(|| {
+            let count = self.sizes.len();
+            Error::InvalidParameter(format!("size number {index} of a network with {count}, counted from 0"))
+        })?;
+        let latent = self.latent(index);
+        let bases: Vec<_> = self.trunk.iter().map(|layer| layer.base(&latent)).collect();
+        let side = usize::from(size.side);
+        let coordinates: Vec<_> = (0..side).map(|k| waved(&self.shape, coordinate(k, side))).collect();
+        let (pixels, width) = (side * side, usize::from(self.shape.width));
+        let mut features = vec![f32x8::ZERO; pixels.div_ceil(LANES) * width];
+        let mut scores = Vec::with_capacity(pixels);
+        for (stage, layers) in STAGES.iter().enumerate() {
+            for (block, features) in features.chunks_mut(BLOCK * width).enumerate() {
+                let tiles = features.len() / width;
+                let mut x = if stage == 0 {
+                    self.inputs(&coordinates, block * BLOCK, tiles)
+                } else {
+                    features.to_vec()
+                };
+                for layer in layers.clone() {
+                    x = self.layer(layer, &bases[layer], &x, tiles);
+                }
+                if stage < NORMS {
+                    features.copy_from_slice(&x);
+                } else {
+                    collect(&self.layer(OUT, &bases[OUT], &x, tiles), pixels, &mut scores);
+                }
+            }
+            if let Some(parameters) = self.norms.get(stage) {
+                norm(parameters, &mut features, pixels);
+            }
+        }
+        Ok(scores)
+    }
+
+    /// The numbers that stand for a size, the same in all lanes; none without an encoder.
+    fn latent(&self, index: usize) -> Vec<f32x8> {
+        let Some(last) = self.encoder.len().checked_sub(1) else { return Vec::new() };
+        let numbers = condition(&self.shape, index, self.sizes.len());
+        let mut x: Vec<f32x8> = numbers.into_iter().map(f32x8::splat).collect();
+        for (k, layer) in self.encoder.iter().enumerate() {
+            let mut y = vec![f32x8::ZERO; layer.outputs()];
+            let base = layer.base(&[]);
+            if k < last {
+                layer.apply(&base, &x, &mut y, |sum, _| relu(sum));
+            } else {
+                layer.apply(&base, &x, &mut y, |sum, _| {
+                    f32x8::splat(tanh(f64::from(sum.to_array()[0])) as f32)
+                });
+            }
+            x = y;
+        }
+        x
+    }
+
+    /// What the trunk is given for some tiles, from the coordinates' numbers. Behind the last pixel it comes again.
+    fn inputs(&self, coordinates: &[Vec<f32>], first: usize, tiles: usize) -> Vec<f32x8> {
+        let side = coordinates.len();
+        let mut x = Vec::with_capacity(tiles * self.shape.positions());
+        for tile in first..first + tiles {
+            let at: [[&[f32]; 2]; LANES] = std::array::from_fn(|lane| {
+                let pixel = (tile * LANES + lane).min(side * side - 1);
+                [pixel / side, pixel % side].map(|k| coordinates[k].as_slice())
+            });
+            let mut numbers = at.map(|[y, x]| position(y, x));
+            let rows = (0..self.shape.positions())
+                .map(|_| f32x8::new(std::array::from_fn(|lane| numbers[lane].next().unwrap_or(0.0))));
+            x.extend(rows);
+        }
+        x
+    }
+
+    /// One of the trunk's layers, for some tiles.
+    fn layer(&self, number: usize, base: &[f32], x: &[f32x8], tiles: usize) -> Vec<f32x8> {
+        let layer = &self.trunk[number];
+        let mut y = vec![f32x8::ZERO; tiles * layer.outputs()];
+        let residual = self.shape.residual && matches!(number, 2..=4 | 6..=10);
+        if number == OUT {
+            layer.apply(base, x, &mut y, |sum, _| sum);
+        } else if residual {
+            layer.apply(base, x, &mut y, |sum, at| x[at] + relu(sum));
+        } else {
+            layer.apply(base, x, &mut y, |sum, _| relu(sum));
+        }
+        y
+    }
+}
+
+/// Takes the scores of some tiles' pixels apart, up to the last pixel.
+fn collect(tiles: &[f32x8], pixels: usize, scores: &mut Vec<[f32; CLASSES]>) {
+    for tile in tiles.chunks_exact(CLASSES) {
+        for lane in 0..LANES.min(pixels - scores.len()) {
+            scores.push(std::array::from_fn(|class| tile[class].to_array()[lane]));
+        }
+    }
+}
+
+/// The level of coverage of the first class whose score no other exceeds.
+fn level(scores: &[f32; CLASSES]) -> u8 {
+    let mut class = 0;
+    for (other, score) in scores.iter().enumerate() {
+        if *score > scores[class] {
+            class = other;
+        }
+    }
+    ((class * 255 + 10) / 20) as u8
+}
