@@ -18,6 +18,8 @@ enum Command {
     Render(cli::render::Args),
     Diff(cli::diff::Args),
     Info(cli::info::Args),
+    #[cfg(feature = "lab")]
+    Lab(cli::lab::Args),
 }
 
 fn main() -> ExitCode {
@@ -25,5 +27,7 @@ fn main() -> ExitCode {
         Command::Render(args) => cli::render::run(&args),
         Command::Diff(args) => cli::diff::run(&args),
         Command::Info(args) => cli::info::run(&args),
+        #[cfg(feature = "lab")]
+        Command::Lab(args) => cli::lab::run(&args),
     })
 }

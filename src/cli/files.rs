@@ -8,6 +8,7 @@ use read_fonts::FontRef;
 
 use super::failure::Failure;
 use crate::convert::open::{has_models, open};
+use crate::convert::temporary::beside;
 use crate::render::Font;
 
 /// Reads a whole file.
@@ -63,7 +64,7 @@ impl Output {
         };
         let output = Self { path, kind };
         if output.kind == Kind::Regular {
-            output.temporary().map_err(|e| unwritable(&output.path, &e))?;
+            beside(&output.path).map_err(|e| unwritable(&output.path, &e))?;
         }
         Ok(output)
     }
@@ -79,30 +80,13 @@ impl Output {
     pub(super) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         let result = match self.kind {
             Kind::Special => fs::write(&self.path, bytes),
-            Kind::Regular => self.temporary().and_then(|mut file| {
+            Kind::Regular => beside(&self.path).and_then(|mut file| {
                 file.write_all(bytes)?;
                 file.as_file().sync_all()?;
                 file.persist(&self.path).map(drop).map_err(|e| e.error)
             }),
         };
         result.map_err(|e| unwritable(&self.path, &e))
-    }
-
-    /// A file in the same directory, which goes away unless it is renamed.
-    fn temporary(&self) -> io::Result<tempfile::NamedTempFile> {
-        let directory = match self.path.parent() {
-            Some(directory) if !directory.as_os_str().is_empty() => directory,
-            _ => Path::new("."),
-        };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".nfr-");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // As for any new file: what the umask leaves.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        builder.tempfile_in(directory)
     }
 }
 

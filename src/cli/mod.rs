@@ -6,6 +6,8 @@
 pub mod convert;
 pub mod diff;
 pub mod info;
+#[cfg(feature = "lab")]
+pub mod lab;
 pub mod render;
 
 mod args;

@@ -22,6 +22,7 @@ pub mod start;
 pub mod strip;
 pub mod teach;
 pub mod teacher;
+pub(crate) mod temporary;
 pub mod train;
 mod warp;
 

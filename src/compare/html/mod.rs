@@ -161,6 +161,6 @@ fn image(canvas: &Canvas, zoom: u32) -> Result<String, Error> {
     Ok(format!("<img width=\"{width}\" height=\"{height}\" alt=\"\" src=\"data:image/png;base64,{png}\">"))
 }
 
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
