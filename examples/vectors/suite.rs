@@ -7,8 +7,8 @@ use std::thread;
 
 use nfr::{Bitmap, Error, Font, Glyph, Rasterizer, Setting};
 
-/// The fonts: `NAME.ttf`, whose vectors are in `NAME.txt`.
-pub(crate) const FONTS: [&str; 3] = ["sans", "serif", "mono"];
+/// The fonts: `NAME.ttf`, whose vectors are in `NAME.txt`. The last has networks.
+pub(crate) const FONTS: [&str; 4] = ["sans", "serif", "mono", "network"];
 /// The file with whole bitmaps.
 const BITMAPS: &str = "bitmaps.txt";
 /// The file with a hash of many bitmaps of each glyph.
@@ -110,7 +110,7 @@ pub(crate) fn draw(folder: &Path, threads: usize) -> Result<Vec<File>, String> {
         let said = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
         let data = fs::read(&path).map_err(|e| said(&e))?;
         let font = Font::parse(&data).map_err(|e| said(&e))?;
-        let (vectors, sweep) = jobs(&font);
+        let (vectors, sweep) = jobs(&font).map_err(|e| said(&e))?;
         let lines = |jobs: &[Job]| lines(&font, jobs, threads).map_err(|e| said(&e));
         let mut text = "# glyph ppem pen-x pen-y left top width height hash\n".to_owned();
         lines(&vectors)?.iter().for_each(|line| text.extend([line, "\n"]));
@@ -123,19 +123,26 @@ pub(crate) fn draw(folder: &Path, threads: usize) -> Result<Vec<File>, String> {
 }
 
 /// The vectors of a font, and its sweeps.
-fn jobs(font: &Font<'_>) -> (Vec<Job>, Vec<Job>) {
+fn jobs(font: &Font<'_>) -> Result<(Vec<Job>, Vec<Job>), Error> {
     let shifted = PEN_SIZES.iter().flat_map(|ppem| PENS.map(|pen| Setting { ppem: *ppem, pen }));
     let usual: Vec<Setting> = SIZES.iter().map(|ppem| Setting::from(*ppem)).chain(shifted).collect();
     let last = f32::from(font.ppem_range().1);
     let steps = (f32::from(SWEEP.1) / SWEEP.0) as u16;
     let sweep: Vec<Setting> =
         (0..=steps).rev().map(|step| (last - f32::from(step) * SWEEP.0).into()).collect();
-    let mut vectors = Vec::new();
+    let (mut vectors, mut sweeps) = (Vec::new(), Vec::new());
     for (at, gid) in font.modelled_glyphs().enumerate() {
+        if let Some(network) = font.glyph(gid)?.network() {
+            // It draws the sizes that it was trained for, and nothing between pixels.
+            let sizes = network.sizes().iter().map(|size| Setting::from(f32::from(size.ppem)));
+            vectors.extend(sizes.map(|setting| (at, vec![setting])));
+            continue;
+        }
+        sweeps.push((at, sweep.clone()));
         let large = (gid % LARGE.1 == 0).then(|| Setting::from(LARGE.0));
         vectors.extend(usual.iter().copied().chain(large).map(|setting| (at, vec![setting])));
     }
-    (vectors, (0..font.modelled_glyphs().len()).map(|at| (at, sweep.clone())).collect())
+    Ok((vectors, sweeps))
 }
 
 /// What is written for some jobs. One thread draws as an application does, with a cache; several draw each glyph
@@ -204,7 +211,10 @@ fn fnv1a(hash: u64, bytes: &[u8]) -> u64 {
 
 /// Writes some of a font's bitmaps down, pixel by pixel.
 fn whole(name: &str, font: &Font<'_>, text: &mut String) -> Result<(), Error> {
-    for (character, ppem, pen) in WHOLE {
+    let networks = font.modelled_glyphs().any(|gid| font.is_network(gid));
+    // A font of networks is smaller, and draws its own sizes alone.
+    let first = [('a', f32::from(font.ppem_range().0), [0.0, 0.0])];
+    for (character, ppem, pen) in if networks { first.to_vec() } else { WHOLE.to_vec() } {
         let gid = font.glyph_for_char(character).ok_or(Error::MissingGlyph(0))?;
         let setting = Setting { ppem, pen };
         let bitmap = font.glyph(gid)?.render(setting)?;
