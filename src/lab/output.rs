@@ -11,7 +11,7 @@ use super::charts::{Headings, Line, loss_history};
 use super::error::write_csv;
 use super::files;
 use super::interpolation::{Interpolation, names};
-use super::pictures::{Comparison, Strip, cascade, triptychs};
+use super::pictures::{Comparison, Strip, cascade, noted, triptychs};
 use super::scale::Settings;
 use super::schedule::resets;
 use super::single::Outcome;
@@ -85,7 +85,7 @@ pub fn outcome(bench: &Bench<'_>, outcome: &Outcome) -> Result<(), Error> {
     let rows = labels.iter().zip(&outcome.drawn).zip(&outcome.truth);
     let rows: Vec<Comparison<'_>> =
         rows.map(|((label, prediction), truth)| Comparison { label, prediction, truth }).collect();
-    files::write(&place.join("comparison.png"), &triptychs(&rows, ZOOM)?)
+    files::write(&place.join("comparison.png"), &noted(&triptychs(&rows, ZOOM)?, bench.settings.kind())?)
 }
 
 /// Writes what an experiment on a family gave beside its checkpoint, if the bench has a directory.
@@ -101,7 +101,7 @@ pub fn interpolation(bench: &Bench<'_>, experiment: &str, found: &Interpolation)
     let rows = found.ends.iter().chain(&found.between).flat_map(|drawing| drawing.rows.clone());
     let table = write_csv(&rows.collect::<Vec<_>>())?;
     files::write(&place.join("errors.csv"), labelled(&label, &table).as_bytes())?;
-    files::write(&place.join("between.png"), &between(found)?)
+    files::write(&place.join("between.png"), &noted(&between(found)?, bench.settings.kind())?)
 }
 
 /// A picture of what lies between two fonts, at all sizes: the first font, what each way makes of it, the real one

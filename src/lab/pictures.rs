@@ -103,6 +103,23 @@ pub fn cascade(models: &[Strip<'_>], columns: usize, zoom: u32) -> Result<Vec<u8
     png(&picture)
 }
 
+/// A picture with a line of text below it, in letters as those of [`Comparison`].
+///
+/// # Errors
+///
+/// `LimitExceeded` for a picture that cannot be read, or that becomes too large.
+pub fn noted(picture: &[u8], note: &str) -> Result<Vec<u8>, Error> {
+    let picture = image::load_from_memory(picture)
+        .map_err(|e| Error::LimitExceeded(format!("a picture cannot be read again ({e})")))?
+        .into_rgb8();
+    let note = letters(note, 1)?;
+    let width = picture.width().max(note.width() + 2 * MARGIN);
+    let mut whole = blank(width.into(), u64::from(picture.height() + note.height() + MARGIN))?;
+    replace(&mut whole, &picture, 0, 0);
+    replace(&mut whole, &note, MARGIN.into(), picture.height().into());
+    png(&whole)
+}
+
 /// The bitmaps of a row from `start` to before `end`, as far as there are any.
 fn piece<'s, 'p>(row: &'p Strip<'s>, start: usize, end: usize) -> &'p [&'s Square] {
     let count = row.squares.len();

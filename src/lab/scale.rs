@@ -128,14 +128,19 @@ impl Settings {
         Course { rates, batch: MASKED_BATCH, seed: self.seed }
     }
 
+    /// At which scale figures and pictures were made.
+    pub fn kind(&self) -> &'static str {
+        match self.scale {
+            Scale::Paper => "published scale",
+            Scale::Small => "SMALL SCALE, not the published one",
+        }
+    }
+
     /// What every output says about where its figures come from.
     pub fn label(&self) -> String {
         let sizes = self.sides.len();
         let (width, epochs, masked) = (self.implicit.width, self.implicit_epochs, self.masked_epochs);
-        let kind = match self.scale {
-            Scale::Paper => "published scale",
-            Scale::Small => "SMALL SCALE, not the published one",
-        };
+        let kind = self.kind();
         format!("{kind}: {sizes} sizes; implicit {width} wide, {epochs} epochs; masked {masked} epochs")
     }
 }

@@ -109,3 +109,15 @@ fn what_cannot_be_drawn_is_refused() {
     assert!(blank(1 << 20, 1 << 20).unwrap_err().to_string().contains("fewer bitmaps"));
     assert!(strips(&[], &[], 1).is_ok() && cascade(&[], 0, 1).is_ok());
 }
+
+#[test]
+fn a_note_stands_below_a_picture_that_stays_as_it_is() {
+    let square = Square { side: 20, pixels: vec![128; 400] };
+    let row = Strip { label: "a", squares: vec![&square] };
+    let plain = strips(&[], &[row], 2).unwrap();
+    let (before, after) = (open("plain", &plain), open("noted", &noted(&plain, "small scale").unwrap()));
+    assert!(after.height() > before.height() && after.width() >= before.width());
+    assert!(before.enumerate_pixels().all(|(x, y, pixel)| after.get_pixel(x, y) == pixel));
+    let below = after.enumerate_pixels().filter(|(_, y, _)| *y >= before.height());
+    assert!(below.filter(|(_, _, pixel)| pixel.0 != [255; 3]).count() > 50, "the note has ink");
+}

@@ -3,7 +3,7 @@
 use super::super::Square;
 use super::super::interpolation::Interpolation;
 use super::super::output::{COLUMNS, between};
-use super::super::pictures::{Comparison, Strip, cascade, strips, triptychs};
+use super::super::pictures::{Comparison, Strip, cascade, noted, strips, triptychs};
 use super::super::resize::{Method, shrunk};
 use super::super::single::Outcome;
 use super::figures::models;
@@ -18,14 +18,15 @@ const CASCADE_ZOOM: u32 = 3;
 /// All pictures.
 pub(super) fn sections(part: &Part<'_>) -> Result<Vec<Section>, Error> {
     let mut all = vec![side_by_side(part)?, cascades(part)?, bitmaps(part)?];
-    all.push(family("Between two weights", "weights", &part.findings.weights)?);
-    all.push(family("Between two typefaces", "styles", &part.findings.styles)?);
+    all.push(family(part, "Between two weights", "weights", &part.findings.weights)?);
+    all.push(family(part, "Between two typefaces", "styles", &part.findings.styles)?);
     all.push(stored(part)?);
     Ok(all)
 }
 
-fn png(file: String, bytes: Vec<u8>, caption: impl Into<String>) -> Figure {
-    Figure { file, bytes, caption: caption.into() }
+/// A picture, with a line that says at which scale it was made.
+fn png(part: &Part<'_>, file: String, picture: &[u8], caption: impl Into<String>) -> Result<Figure, Error> {
+    Ok(Figure { file, bytes: noted(picture, part.bench.settings.kind())?, caption: caption.into() })
 }
 
 /// A model's outcome on the first font.
@@ -58,7 +59,7 @@ fn side_by_side(part: &Part<'_>) -> Result<Section, Error> {
             "{}, boxes of {side}×{side} pixels: what the model draws, its error (red too dark, blue too light), the truth.",
             part.font()
         );
-        figures.push(png(format!("triptychs-{what}.png"), bytes, caption));
+        figures.push(png(part, format!("triptychs-{what}.png"), &bytes, caption)?);
     }
     Ok(Section { title: "Prediction, error, truth", text: String::new(), figures })
 }
@@ -74,7 +75,12 @@ fn cascades(part: &Part<'_>) -> Result<Section, Error> {
         );
         let code = u32::from(glyph);
         let bytes = cascade(&rows, COLUMNS, CASCADE_ZOOM)?;
-        figures.push(png(format!("cascade-u{code:04x}.png"), bytes, format!("{}: {glyph}", part.font())));
+        figures.push(png(
+            part,
+            format!("cascade-u{code:04x}.png"),
+            &bytes,
+            format!("{}: {glyph}", part.font()),
+        )?);
     }
     Ok(Section { title: "Cascades over all sizes", text: String::new(), figures })
 }
@@ -103,7 +109,7 @@ fn bitmaps(part: &Part<'_>) -> Result<Section, Error> {
     let figure = |file: &str, headings: &[&str], rows: &[(String, Vec<Square>)], caption: String| {
         let rows: Vec<Strip<'_>> =
             rows.iter().map(|(label, squares)| Strip { label, squares: squares.iter().collect() }).collect();
-        Ok::<_, Error>(png(file.into(), strips(headings, &rows, ZOOM)?, caption))
+        png(part, file.into(), &strips(headings, &rows, ZOOM)?, caption)
     };
     let font = part.font();
     Ok(Section {
@@ -127,7 +133,12 @@ fn bitmaps(part: &Part<'_>) -> Result<Section, Error> {
     })
 }
 
-fn family(title: &'static str, experiment: &str, all: &[Interpolation]) -> Result<Section, Error> {
+fn family(
+    part: &Part<'_>,
+    title: &'static str,
+    experiment: &str,
+    all: &[Interpolation],
+) -> Result<Section, Error> {
     let mut figures = Vec::new();
     let mut table = String::new();
     for one in all {
@@ -140,7 +151,7 @@ fn family(title: &'static str, experiment: &str, all: &[Interpolation]) -> Resul
             one.glyph,
             if real { ", and the real font" } else { "" }
         );
-        figures.push(png(format!("{experiment}-u{code:04x}.png"), bytes, caption));
+        figures.push(png(part, format!("{experiment}-u{code:04x}.png"), &bytes, caption)?);
         for drawing in one.ends.iter().chain(&one.between) {
             let mse = drawing.mse().map_or_else(|| "no truth".into(), |mse| format!("{mse:.2e}"));
             let [glyph, of] = [one.glyph.to_string(), drawing.of.clone()].map(|text| escape(&text));
