@@ -24,7 +24,7 @@ fn read(directory: &Directory, name: &str) -> String {
 
 #[test]
 fn every_command_has_help() {
-    for command in ["truth", "implicit", "masked", "store", "weights", "styles", "report"] {
+    for command in ["truth", "implicit", "masked", "grid-fit", "store", "weights", "styles", "report"] {
         assert!(lab(&[command, "--help"], &[]).succeeds().stdout.contains("Usage: nfr lab "));
     }
 }
@@ -51,6 +51,8 @@ fn wrong_usage_is_told() {
     lab(&["implicit", SANS, "--text", "l", "--without", "hope"], &out)
         .rejects_usage(&["frequencies, memorisation"]);
     lab(&["masked", SANS, "--text", ""], &out).rejects_usage(&["--text"]);
+    lab(&["masked", SANS, "--text", "l", "--boxes", "20-64"], &out).rejects_usage(&["64", "20-63"]);
+    lab(&["masked", SANS, "--text", "l", "--boxes", "many"], &out).rejects_usage(&["many"]);
     lab(&["truth", SANS, "--first", "30", "--last", "20"], &out).rejects_usage(&["the smallest first"]);
     lab(&["store", SANS, "out.ttf", "--text", "l", "--bits", "7"], &out).rejects_usage(&["16 or 8"]);
     lab(&["implicit", SANS, "--text", "\u{1F600}"], &out).fails_with(&["U+1F600"]);
@@ -81,6 +83,34 @@ fn trainings_leave_history_errors_and_settings_and_are_gone_on_with_only_when_as
     }
     let settings: serde_json::Value = serde_json::from_str(&read(&directory, "out/settings.json")).unwrap();
     assert_eq!((&settings["scale"], &settings["implicit_epochs"]), (&"small".into(), &15.into()));
+}
+
+#[test]
+fn our_own_model_is_trained_on_the_same_bitmaps() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let args = ["grid-fit", SANS, "--text", "l", "--boxes", "20,24", "--out", &out, "--quiet"];
+    let run = lab(&args, &[]).succeeds();
+    assert!(run.stdout.starts_with(LABEL) && run.stdout.contains(" bytes") && !run.stdout.contains("loss"));
+    let errors = read(&directory, "out/grid-fit/LiberationSans-Regular/u006c/errors.csv");
+    let worst =
+        errors.lines().skip(2).filter_map(|line| line.split(',').nth(5)?.parse().ok()).fold(0.0, f64::max);
+    assert!(worst > 0.0 && worst < 1e-3, "{errors}");
+    assert!(
+        !std::path::Path::new(&directory.name("out/grid-fit/LiberationSans-Regular/u006c/loss.svg")).exists()
+    );
+}
+
+#[test]
+fn boxes_and_epochs_other_than_the_scales_are_told() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let fewer = ["--scale", "paper", "--boxes", "20,22-26:4", "--epochs", "1", "--out", &out, "--quiet"];
+    let run = lab(&["masked", SANS, "--text", "l"], &fewer).succeeds();
+    assert!(run.stdout.starts_with("PUBLISHED WIDTHS, not the published sizes and epochs: 3 sizes"));
+    let errors = read(&directory, "out/masked/LiberationSans-Regular/u006c/errors.csv");
+    let sides: Vec<&str> = errors.lines().skip(2).filter_map(|line| line.split(',').nth(3)).collect();
+    assert_eq!(sides, ["20", "22", "26"], "{errors}");
 }
 
 #[test]

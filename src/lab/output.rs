@@ -65,7 +65,8 @@ pub fn settings(bench: &Bench<'_>) -> Result<(), Error> {
     files::write(&place.join("settings.json"), (json + "\n").as_bytes())
 }
 
-/// Writes a training's history, errors and pictures beside its checkpoint, if the bench has a directory.
+/// Writes a training's history, errors and pictures beside its checkpoint, if the bench has a directory. Our own model has
+/// no history.
 ///
 /// # Errors
 ///
@@ -74,12 +75,10 @@ pub fn outcome(bench: &Bench<'_>, outcome: &Outcome) -> Result<(), Error> {
     let code = format!("u{:04x}", u32::from(outcome.glyph));
     let Some(place) = bench.place(&[&outcome.model, &outcome.font, &code]) else { return Ok(()) };
     let label = bench.settings.label();
-    history(
-        &place,
-        &label,
-        &format!("{} of {:?} in {}", outcome.model, outcome.glyph, outcome.font),
-        &outcome.history,
-    )?;
+    if !outcome.history.is_empty() {
+        let title = format!("{} of {:?} in {}", outcome.model, outcome.glyph, outcome.font);
+        history(&place, &label, &title, &outcome.history)?;
+    }
     files::write(&place.join("errors.csv"), labelled(&label, &write_csv(&outcome.rows)?).as_bytes())?;
     let labels: Vec<String> = outcome.truth.iter().map(|truth| truth.side.to_string()).collect();
     let rows = labels.iter().zip(&outcome.drawn).zip(&outcome.truth);
@@ -168,17 +167,13 @@ pub fn summary(settings: &Settings, outcomes: &[Outcome]) -> String {
     let mut text = format!("{}\n", settings.label());
     let wide = outcomes.iter().map(|outcome| outcome.model.len()).max().unwrap_or(0);
     for outcome in outcomes {
-        let loss = outcome.history.last().map_or(f64::NAN, |epoch| epoch.loss);
-        let _ = writeln!(
-            text,
-            "{:wide$}  {} {:?}  loss {loss:.3e}  mse {:.3e}  mae {:.4}  {:.1} s",
-            outcome.model,
-            outcome.font,
-            outcome.glyph,
-            outcome.mse(),
-            outcome.mae(),
-            outcome.seconds()
-        );
+        let (model, font, glyph) = (&outcome.model, &outcome.font, outcome.glyph);
+        let (mse, mae) = (outcome.mse(), outcome.mae());
+        let _ = write!(text, "{model:wide$}  {font} {glyph:?}  mse {mse:.3e}  mae {mae:.4}");
+        if let Some(last) = outcome.history.last() {
+            let _ = write!(text, "  loss {:.3e}  {:.1} s", last.loss, outcome.seconds());
+        }
+        text.push('\n');
     }
     text
 }

@@ -130,8 +130,10 @@ impl Settings {
 
     /// At which scale figures and pictures were made.
     pub fn kind(&self) -> &'static str {
+        let published = Self { seed: self.seed, ..Self::new(Scale::Paper) };
         match self.scale {
-            Scale::Paper => "published scale",
+            Scale::Paper if *self == published => "published scale",
+            Scale::Paper => "PUBLISHED WIDTHS, not the published sizes and epochs",
             Scale::Small => "SMALL SCALE, not the published one",
         }
     }
@@ -142,5 +144,22 @@ impl Settings {
         let (width, epochs, masked) = (self.implicit.width, self.implicit_epochs, self.masked_epochs);
         let kind = self.kind();
         format!("{kind}: {sizes} sizes; implicit {width} wide, {epochs} epochs; masked {masked} epochs")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_was_published_is_called_so() {
+        let paper = Settings { seed: 7, ..Settings::new(Scale::Paper) };
+        assert!(paper.label().starts_with("published scale: 44 sizes; implicit 784 wide, 500 epochs"));
+        let fewer = Settings { sides: vec![20, 24], ..paper.clone() };
+        assert!(fewer.label().starts_with("PUBLISHED WIDTHS, not the published sizes and epochs: 2 sizes"));
+        let mut shorter = paper;
+        shorter.set_epochs(100);
+        assert!(shorter.label().starts_with("PUBLISHED WIDTHS"));
+        assert!(Settings::new(Scale::Small).label().starts_with("SMALL SCALE"));
     }
 }

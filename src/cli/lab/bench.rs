@@ -10,7 +10,8 @@ use burn::tensor::Device;
 use crate::cli::args::{all_cores, jobs};
 use crate::cli::failure::Failure;
 use crate::cli::files::read;
-use crate::lab::bench::{Bench, Subject};
+use crate::convert::ppem::PpemList;
+use crate::lab::bench::{Bench, SIDES, Subject};
 use crate::lab::scale::{Scale, Settings};
 
 /// The glyphs that the fit rule looks at unless others are given.
@@ -44,6 +45,9 @@ pub(super) struct BenchArgs {
     /// Train for so many epochs instead of the scale's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     epochs: Option<u32>,
+    /// Train for boxes of so many pixels instead of the scale's, as in 20-36:4
+    #[arg(long, value_name = "LIST", value_parser = boxes)]
+    boxes: Option<PpemList>,
     /// Print nothing but results and errors
     #[arg(long, short)]
     quiet: bool,
@@ -67,11 +71,26 @@ fn device(name: &str) -> Result<Choice, String> {
     }
 }
 
+/// Sides of boxes are written as sizes of type are.
+fn boxes(list: &str) -> Result<PpemList, String> {
+    let boxes: PpemList = list.parse()?;
+    match boxes.sizes().iter().find(|side| !SIDES.contains(&usize::from(**side))) {
+        Some(side) => {
+            let (first, last) = SIDES.into_inner();
+            Err(format!("a box of {side} pixels is outside the paper's {first}-{last}; choose boxes within"))
+        }
+        None => Ok(boxes),
+    }
+}
+
 impl BenchArgs {
     pub(super) fn settings(&self) -> Settings {
         let mut settings = Settings { seed: self.seed, ..Settings::new(self.scale) };
         if let Some(epochs) = self.epochs {
             settings.set_epochs(epochs as usize);
+        }
+        if let Some(boxes) = &self.boxes {
+            settings.sides = boxes.sizes().iter().copied().map(usize::from).collect();
         }
         settings
     }

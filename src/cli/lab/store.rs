@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::bench::{BenchArgs, open_subject};
-use super::train::GlyphArgs;
+use super::bench::BenchArgs;
+use super::train::{GlyphArgs, open};
 use crate::cli::failure::Failure;
 use crate::cli::files::Output;
 use crate::lab::output;
@@ -38,11 +38,7 @@ fn precision(bits: &str) -> Result<Precision, String> {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let output = Output::new(&args.output)?;
-    let subject = open_subject(&args.bench, &args.glyphs.font, &args.glyphs.set)?;
-    let chosen = subject.glyphs(&args.glyphs.text)?;
-    if chosen.is_empty() {
-        return Err(Failure::usage("no characters are given; name some with --text"));
-    }
+    let (subject, chosen) = open(&args.glyphs, &args.bench)?;
     args.bench.with(|bench| {
         let trained = bench.each(&chosen, |glyph| {
             let (outcome, network) = implicit(bench, &subject, *glyph, &[])?;

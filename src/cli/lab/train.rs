@@ -1,12 +1,14 @@
-//! `nfr lab implicit` and `nfr lab masked`: one of the paper's models for some glyphs.
+//! `nfr lab implicit`, `nfr lab masked` and `nfr lab grid-fit`: one of the models for some glyphs.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
 use super::bench::{BenchArgs, SET, open_subject};
 use crate::cli::failure::Failure;
+use crate::lab::bench::{Glyph, Subject};
 use crate::lab::output;
-use crate::lab::single::{Ablation, Model, train};
+use crate::lab::single::{self, Ablation, Model, train};
 
 /// Trains the implicit network: from a pixel's place and the size to its intensity class
 #[derive(Debug, clap::Args)]
@@ -23,6 +25,15 @@ pub(super) struct ImplicitArgs {
 /// Trains the masked network: from a size to a bitmap of the largest size, most of it masked
 #[derive(Debug, clap::Args)]
 pub(super) struct MaskedArgs {
+    #[command(flatten)]
+    glyphs: GlyphArgs,
+    #[command(flatten)]
+    bench: BenchArgs,
+}
+
+/// Trains the grid-fit field, this project's own model, at the same sizes: with default options, whatever --epochs says
+#[derive(Debug, clap::Args)]
+pub(super) struct GridFitArgs {
     #[command(flatten)]
     glyphs: GlyphArgs,
     #[command(flatten)]
@@ -51,11 +62,7 @@ pub(super) fn masked(args: &MaskedArgs) -> Result<(), Failure> {
 }
 
 fn run(glyphs: &GlyphArgs, args: &BenchArgs, model: &Model) -> Result<(), Failure> {
-    let subject = open_subject(args, &glyphs.font, &glyphs.set)?;
-    let chosen = subject.glyphs(&glyphs.text)?;
-    if chosen.is_empty() {
-        return Err(Failure::usage("no characters are given; name some with --text"));
-    }
+    let (subject, chosen) = open(glyphs, args)?;
     args.with(|bench| {
         let outcomes = bench.each(&chosen, |glyph| {
             let outcome = train(bench, &subject, *glyph, model)?;
@@ -65,4 +72,30 @@ fn run(glyphs: &GlyphArgs, args: &BenchArgs, model: &Model) -> Result<(), Failur
         output::settings(bench)?;
         Ok(io::stdout().write_all(output::summary(&bench.settings, &outcomes).as_bytes())?)
     })
+}
+
+pub(super) fn grid_fit(args: &GridFitArgs) -> Result<(), Failure> {
+    let (subject, chosen) = open(&args.glyphs, &args.bench)?;
+    args.bench.with(|bench| {
+        let (outcomes, bytes): (Vec<_>, Vec<_>) =
+            single::grid_fit(bench, &subject, &chosen)?.into_iter().unzip();
+        outcomes.iter().try_for_each(|outcome| output::outcome(bench, outcome))?;
+        output::settings(bench)?;
+        let mut text = output::summary(&bench.settings, &outcomes);
+        for (outcome, bytes) in outcomes.iter().zip(bytes) {
+            // A string takes everything that is written to it.
+            let _ = writeln!(text, "{:?}  {bytes} bytes", outcome.glyph);
+        }
+        Ok(io::stdout().write_all(text.as_bytes())?)
+    })
+}
+
+/// Opens the font, and finds the glyphs.
+pub(super) fn open(glyphs: &GlyphArgs, args: &BenchArgs) -> Result<(Subject, Vec<Glyph>), Failure> {
+    let subject = open_subject(args, &glyphs.font, &glyphs.set)?;
+    let chosen = subject.glyphs(&glyphs.text)?;
+    if chosen.is_empty() {
+        return Err(Failure::usage("no characters are given; name some with --text"));
+    }
+    Ok((subject, chosen))
 }

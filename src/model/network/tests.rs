@@ -271,16 +271,3 @@ fn the_specification_names_the_limits_of_networks() {
         assert!(page.contains(&words), "spec/nfrt.md does not say {words:?}");
     }
 }
-
-/// Not a test of what is drawn but of how long it takes: `cargo test --release --lib network -- --ignored --nocapture`.
-#[test]
-#[ignore = "takes seconds"]
-fn how_long_a_bitmap_takes() {
-    for (width, latent) in [(64, 0), (784, 0), (784, 784)] {
-        let shape = Shape { width, latent, encoder: 256, frequencies: true, residual: true };
-        let network = Network::new(noisy(shape, &[63], 3)).unwrap();
-        let start = std::time::Instant::now();
-        network.levels(0).unwrap();
-        eprintln!("width {width}, latent {latent}: {:?}", start.elapsed());
-    }
-}
