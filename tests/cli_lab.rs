@@ -81,6 +81,12 @@ fn trainings_leave_history_errors_and_settings_and_are_gone_on_with_only_when_as
         let again = lab(&[command, SANS, "--resume"], &more).succeeds();
         assert_eq!(again.stdout, first.stdout, "nothing was trained again");
     }
+    assert!(
+        lab(&["implicit", SANS, "--resume"], &more)
+            .succeeds()
+            .stdout
+            .contains("4080 pixels in a wrong class")
+    );
     let settings: serde_json::Value = serde_json::from_str(&read(&directory, "out/settings.json")).unwrap();
     assert_eq!((&settings["scale"], &settings["implicit_epochs"]), (&"small".into(), &15.into()));
 }

@@ -1,6 +1,7 @@
 //! Coverage as classes: the implicit network does not regress a pixel's coverage, it chooses one of 21 levels: 0, 5 %,
 //! … 100 %. The paper's text says 20, its code has 21.
 
+use super::Square;
 pub use crate::model::network::CLASSES;
 
 /// The class of a coverage: the highest level that it reaches, as the paper's code rounds.
@@ -11,6 +12,12 @@ pub fn class_of(coverage: u8) -> usize {
 /// The coverage that a class stands for.
 pub fn coverage_of(class: usize) -> u8 {
     ((class * 255 + (CLASSES - 1) / 2) / (CLASSES - 1)) as u8
+}
+
+/// A bitmap as a network draws it that gives every pixel its class.
+pub fn rounded(bitmap: &Square) -> Square {
+    let pixels = bitmap.pixels.iter().map(|coverage| coverage_of(class_of(*coverage))).collect();
+    Square { side: bitmap.side, pixels }
 }
 
 #[cfg(test)]
@@ -27,5 +34,19 @@ mod tests {
         assert_eq!([0, 1, 10, 19, 20].map(coverage_of), [0, 13, 128, 242, 255]);
         let worst = (0..=255).map(|v: u8| v.abs_diff(coverage_of(class_of(v)))).max();
         assert_eq!(worst, Some(12), "never a whole class, 12.75 levels, off");
+    }
+
+    #[test]
+    fn a_rounded_bitmap_is_less_than_a_class_lighter_and_never_darker() {
+        let bitmap = Square { side: 16, pixels: (0..=255).collect() };
+        let rounded = rounded(&bitmap);
+        assert_eq!((rounded.side, rounded.pixels[0], rounded.pixels[255]), (16, 0, 255));
+        assert!(
+            rounded
+                .pixels
+                .iter()
+                .zip(&bitmap.pixels)
+                .all(|(r, v)| (0..13).contains(&(i32::from(*v) - i32::from(*r))))
+        );
     }
 }

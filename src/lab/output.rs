@@ -14,7 +14,7 @@ use super::interpolation::{Interpolation, names};
 use super::pictures::{Comparison, Strip, cascade, noted, triptychs};
 use super::scale::Settings;
 use super::schedule::resets;
-use super::single::Outcome;
+use super::single::{Choices, Outcome};
 use super::train::Epoch;
 use crate::error::Error;
 
@@ -172,6 +172,12 @@ pub fn summary(settings: &Settings, outcomes: &[Outcome]) -> String {
         let _ = write!(text, "{model:wide$}  {font} {glyph:?}  mse {mse:.3e}  mae {mae:.4}");
         if let Some(last) = outcome.history.last() {
             let _ = write!(text, "  loss {:.3e}  {:.1} s", last.loss, outcome.seconds());
+        }
+        if let Some(Choices { pixels, wrong, mse, rounding }) = outcome.choices {
+            let _ = write!(
+                text,
+                "  {wrong} of {pixels} pixels in a wrong class: mse {mse:.3e}, that of the right ones {rounding:.3e}"
+            );
         }
         text.push('\n');
     }

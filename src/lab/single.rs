@@ -2,6 +2,7 @@
 
 use super::Square;
 use super::bench::{Bench, Glyph, Subject};
+use super::classes::rounded;
 use super::error::{ErrorRow, PixelError, pixel_error};
 use super::implicit::{Implicit, ImplicitConfig};
 use super::learn::{self, Learnt};
@@ -102,6 +103,41 @@ pub struct Outcome {
     pub truth: Vec<Square>,
     /// How wrong it is at each size.
     pub rows: Vec<ErrorRow>,
+    /// Of a network that chooses classes, what its choices are worth.
+    pub choices: Option<Choices>,
+}
+
+/// How many pixels of a network's bitmaps have the right class, and what being right would give.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choices {
+    /// Pixels of all bitmaps.
+    pub pixels: usize,
+    /// Those in a wrong class.
+    pub wrong: usize,
+    /// The mean squared error over all sizes against the right classes, which is what the network is asked for.
+    pub mse: f64,
+    /// That of the right classes against the truth: what rounding takes.
+    pub rounding: f64,
+}
+
+impl Choices {
+    /// Counts the choices of a network that drew these bitmaps of the true ones.
+    ///
+    /// # Errors
+    ///
+    /// As [`pixel_error`].
+    pub fn new(truth: &[Square], drawn: &[Square]) -> Result<Self, Error> {
+        let (mut pixels, mut wrong, mut mse, mut rounding) = (0, 0, 0.0, 0.0);
+        for (truth, drawn) in truth.iter().zip(drawn) {
+            let right = rounded(truth);
+            pixels += right.pixels.len();
+            wrong += right.pixels.iter().zip(&drawn.pixels).filter(|(right, drawn)| right != drawn).count();
+            mse += pixel_error(&right, drawn)?.mse;
+            rounding += pixel_error(truth, &right)?.mse;
+        }
+        let sizes = truth.len().max(1) as f64;
+        Ok(Self { pixels, wrong, mse: mse / sizes, rounding: rounding / sizes })
+    }
 }
 
 impl Outcome {
@@ -119,6 +155,7 @@ impl Outcome {
             font: subject.name.clone(),
             glyph: glyph.0,
             history: Vec::new(),
+            choices: None,
             drawn,
             truth,
         })
@@ -196,7 +233,8 @@ pub fn implicit(
     let sizes = samples.len();
     let Learnt { network, history, drawn } =
         learn::implicit(samples, sizes, config, &course, &bench.device, checkpoint.as_ref(), &tell)?;
-    Ok((Outcome { history, ..Outcome::new(&name, subject, glyph, drawn)? }, network))
+    let outcome = Outcome { history, ..Outcome::new(&name, subject, glyph, drawn)? };
+    Ok((Outcome { choices: Some(Choices::new(&outcome.truth, &outcome.drawn)?), ..outcome }, network))
 }
 
 fn masked(bench: &Bench<'_>, subject: &Subject, glyph: Glyph) -> Result<Outcome, Error> {

@@ -2,6 +2,7 @@
 
 use burn::tensor::{Device, Tensor};
 
+use super::Square;
 use super::bench::{Bench, Subject};
 use super::family::{Member, train as train_family};
 use super::implicit::{Implicit, ImplicitConfig, Statistics, focal_loss};
@@ -9,7 +10,7 @@ use super::interpolation::{Aim, interpolate, names};
 use super::masked::{Enlarged, masked_loss};
 use super::samples::ImplicitSet;
 use super::scale::{Scale, Settings};
-use super::single::{Ablation, Model, implicit, train};
+use super::single::{Ablation, Choices, Model, implicit, train};
 use super::stored::{font, weights};
 use super::study::store;
 use crate::Error;
@@ -110,7 +111,25 @@ fn each_network_memorises_a_glyph_at_two_sizes() {
         let outcome = train(&bench, &subject, glyph, &model).unwrap();
         assert!(outcome.mse() < MEMORISED, "{}: {}", outcome.model, outcome.mse());
         assert!(outcome.history.len() == 800 && outcome.rows.len() == 2);
+        let Some(choices) = outcome.choices else {
+            assert_eq!(model, Model::Masked);
+            continue;
+        };
+        assert_eq!(choices.pixels, 20 * 20 + 26 * 26);
+        assert!(choices.wrong > 0 || (outcome.mse() - choices.rounding).abs() < 1e-9, "{choices:?}");
     }
+}
+
+#[test]
+fn choices_are_counted_against_the_classes_below_the_truth() {
+    let square = |pixels: &[u8]| Square { side: 2, pixels: pixels.to_vec() };
+    // 127 is in the class of 45 %, which is drawn as 115; the others stand for their classes.
+    let truth = [square(&[0, 255, 127, 26]), square(&[0, 0, 0, 255])];
+    let choices = Choices::new(&truth, &[square(&[0, 255, 115, 13]), square(&[0, 0, 13, 255])]).unwrap();
+    assert_eq!((choices.pixels, choices.wrong), (8, 2));
+    let of_level = |levels: f64| (levels / 255.0).powi(2) / 4.0 / 2.0;
+    assert!((choices.rounding - of_level(12.0)).abs() < 1e-12);
+    assert!((choices.mse - 2.0 * of_level(13.0)).abs() < 1e-12);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::super::error::{ErrorRow, write_csv};
 use super::super::interpolation::Interpolation;
 use super::super::output::labelled;
-use super::super::single::Outcome;
+use super::super::single::{Choices, Outcome};
 use super::{Claim, Part};
 use crate::error::Error;
 
@@ -55,12 +55,20 @@ fn wrong_pixel(part: &Part<'_>) -> String {
 }
 
 fn trainings(part: &Part<'_>) -> String {
-    let mut table = "model,font,glyph,epochs,seconds,loss\n".to_owned();
+    let mut table =
+        "model,font,glyph,epochs,seconds,loss,pixels,wrong_class,class_mse,rounding_mse\n".to_owned();
     let f = part.findings;
     for one in f.outcomes.iter().chain(&f.ablations).filter(|outcome| !outcome.history.is_empty()) {
         let loss = one.history.last().map_or(f64::NAN, |epoch| epoch.loss);
         let (code, epochs, seconds) = (u32::from(one.glyph), one.history.len(), one.seconds());
-        let _ = writeln!(table, "{},{},U+{code:04X},{epochs},{seconds:.1},{loss:e}", one.model, one.font);
+        let choices = one.choices.map_or(",,,".into(), |Choices { pixels, wrong, mse, rounding }| {
+            format!("{pixels},{wrong},{mse:e},{rounding:e}")
+        });
+        let _ = writeln!(
+            table,
+            "{},{},U+{code:04X},{epochs},{seconds:.1},{loss:e},{choices}",
+            one.model, one.font
+        );
     }
     table
 }
