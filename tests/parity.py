@@ -197,9 +197,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("truth", type=pathlib.Path, help="what `nfr lab truth` wrote")
     parser.add_argument("runs", nargs="+", help="what `nfr lab implicit` and `masked` wrote, a directory for each seed")
+    networks = {"implicit": Implicit, "masked": Masked}
+    parser.add_argument("--only", choices=networks, help="compare one of the networks")
     args = parser.parse_args()
     failed = False
-    for name, model in (("implicit", Implicit), ("masked", Masked)):
+    for name in [args.only] if args.only else networks:
+        model = networks[name]
         of_burn = [burn(run, name) for run in args.runs]
         settings, glyph = of_burn[0][2:]
         sides = settings["sides"]
