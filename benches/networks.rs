@@ -41,5 +41,10 @@ fn benchmarks(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(networks, benchmarks);
+criterion_group! {
+    name = networks;
+    // Some take more than a second.
+    config = Criterion::default().sample_size(10);
+    targets = benchmarks
+}
 criterion_main!(networks);
