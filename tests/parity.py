@@ -51,9 +51,9 @@ def dense(layer, x):
     return x @ layer["w"] + layer["b"]
 
 
-def adam(lossfn):
+def adam(lossfn, keras):
     """One step of Adam as Kingma and Ba, PyTorch and burn have it. Keras, which the paper used, adds epsilon to the
-    uncorrected root: with that the masked network lags behind by half in its first 60 steps."""
+    uncorrected root."""
 
     @jax.jit
     def step(state, rate, *batch):
@@ -62,8 +62,9 @@ def adam(lossfn):
         time_ = time_ + 1
         first = jax.tree.map(lambda m, g: 0.9 * m + 0.1 * g, first, gradient)
         second = jax.tree.map(lambda v, g: 0.999 * v + 0.001 * g * g, second, gradient)
-        rate = rate / (1 - 0.9**time_)
-        weights = jax.tree.map(lambda w, m, v: w - rate * m / (jnp.sqrt(v / (1 - 0.999**time_)) + 1e-7), weights, first, second)
+        rate, correction = rate / (1 - 0.9**time_), jnp.sqrt(1 - 0.999**time_)
+        epsilon = 1e-7 / correction if keras else 1e-7
+        weights = jax.tree.map(lambda w, m, v: w - rate * m / (jnp.sqrt(v) / correction + epsilon), weights, first, second)
         return (weights, first, second, time_), loss
 
     return step
@@ -75,7 +76,7 @@ def start(weights):
 
 
 class Implicit:
-    def __init__(self, settings, squares, key):
+    def __init__(self, settings, squares, key, keras):
         width, latent, hidden = settings["width"], settings["latent"], settings["encoder"]
         place, number = 2 * 65, 65
         shapes = [(number, hidden)] + 4 * [(hidden, hidden)] + [(hidden, latent)]
@@ -90,7 +91,7 @@ class Implicit:
             classes = np.floor(square.ravel() * (CLASSES - 1) / 255.0).astype(int)
             size = encode(k / len(squares)).astype(np.float32)[None]
             self.batches.append((inputs(side), size, np.eye(CLASSES, dtype=np.float32)[classes]))
-        self.step = adam(self.loss)
+        self.step = adam(self.loss, keras)
         self.batch = 1
 
     @staticmethod
@@ -133,7 +134,7 @@ class Implicit:
 
 
 class Masked:
-    def __init__(self, settings, squares, key):
+    def __init__(self, settings, squares, key, keras):
         side = squares[-1].shape[0]
         widths = [len(squares)] + settings["masked_widths"] + [side * side]
         keys = jax.random.split(key, len(widths))
@@ -149,7 +150,7 @@ class Masked:
             mask.append(np.outer(kept, kept).ravel())
         self.truth, self.mask = np.float32(truth), np.float32(mask)
         self.hot = np.eye(len(squares), dtype=np.float32)
-        self.step = adam(self.loss)
+        self.step = adam(self.loss, keras)
         self.batch = 32
 
     @staticmethod
@@ -169,8 +170,8 @@ class Masked:
         return [[5e-4, 1e-5][epoch // period % 2] for epoch in range(settings["masked_epochs"])]
 
 
-def train(model, settings, squares, seed):
-    network = model(settings, squares, jax.random.key(seed))
+def train(model, settings, squares, seed, keras):
+    network = model(settings, squares, jax.random.key(seed), keras)
     order = np.random.default_rng(seed)
     state, begin = start(network.weights), time.time()
     for rate in model.rates(settings):
@@ -199,6 +200,7 @@ def main():
     parser.add_argument("runs", nargs="+", help="what `nfr lab implicit` and `masked` wrote, a directory for each seed")
     networks = {"implicit": Implicit, "masked": Masked}
     parser.add_argument("--only", choices=networks, help="compare one of the networks")
+    parser.add_argument("--keras", action="store_true", help="add epsilon where Keras does, which differs from burn")
     args = parser.parse_args()
     failed = False
     for name in [args.only] if args.only else networks:
@@ -207,7 +209,7 @@ def main():
         settings, glyph = of_burn[0][2:]
         sides = settings["sides"]
         squares = [255.0 - np.asarray(Image.open(args.truth / str(side) / f"{glyph}.png")) for side in sides]
-        of_jax = [train(model, settings, squares, seed) for seed in range(1, len(of_burn) + 1)]
+        of_jax = [train(model, settings, squares, seed, args.keras) for seed in range(1, len(of_burn) + 1)]
         means = [np.mean([run[0] for run in runs]) for runs in (of_burn, of_jax)]
         ratio = means[0] / means[1]
         for framework, runs, mean in (("burn", of_burn, means[0]), ("JAX", of_jax, means[1])):

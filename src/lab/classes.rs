@@ -2,16 +2,11 @@
 //! … 100 %. The paper's text says 20, its code has 21.
 
 use super::Square;
-pub use crate::model::network::CLASSES;
+pub use crate::model::network::{CLASSES, coverage_of};
 
 /// The class of a coverage: the highest level that it reaches, as the paper's code rounds.
 pub fn class_of(coverage: u8) -> usize {
     usize::from(coverage) * (CLASSES - 1) / 255
-}
-
-/// The coverage that a class stands for.
-pub fn coverage_of(class: usize) -> u8 {
-    ((class * 255 + (CLASSES - 1) / 2) / (CLASSES - 1)) as u8
 }
 
 /// A bitmap as a network draws it that gives every pixel its class.

@@ -9,26 +9,18 @@ use burn::tensor::{Device, Int, Tensor};
 
 use super::dense::{dense, stack};
 use super::random::Random;
-use crate::model::network::{CLASSES, ENCODED};
+use crate::model::network::{self, CLASSES, CONDITIONED, ENCODED, NORM_EPSILON, NORMALISED, REPLACING};
 
 /// The focal loss's exponent in the paper's code.
 pub const FOCUS: f64 = 6.0;
 /// Probabilities are kept this far from 0 and 1 in the loss.
 pub const CLIP: f64 = 1e-6;
-/// Added to variances by batch normalisation.
-pub const NORM_EPSILON: f64 = 1e-3;
 /// How much running statistics, which only the ablation uses, take of each batch.
 const NORM_MOMENTUM: f64 = 0.01;
 /// Hidden layers of the encoders of conditions.
-const ENCODER_LAYERS: usize = 5;
+const ENCODER_LAYERS: usize = network::ENCODER_LAYERS - 1;
 /// Layers of the trunk; the output follows.
-const TRUNK_LAYERS: usize = 11;
-/// The layers of the trunk after which batches are normalised.
-const NORMALISED: [usize; 3] = [1, 4, 8];
-/// The layers of the trunk whose output replaces their input; the others add theirs.
-const REPLACING: [usize; 3] = [0, 1, 5];
-/// The layers of the trunk that see the latent vector.
-pub(super) const CONDITIONED: [usize; 2] = [0, 5];
+const TRUNK_LAYERS: usize = network::TRUNK_LAYERS - 1;
 
 /// What an implicit network is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

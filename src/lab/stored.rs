@@ -5,11 +5,11 @@ use burn::tensor::Tensor;
 
 use super::Square;
 use super::bench::{Glyph, Subject};
-use super::implicit::{CONDITIONED, Implicit, ImplicitConfig};
+use super::implicit::{Implicit, ImplicitConfig};
 use super::truth::TruthSize;
 use crate::convert::networks::with_networks;
 use crate::error::Error;
-use crate::model::network::{Dense, NetworkSize, NetworkWeights, Norm, Shape};
+use crate::model::network::{CONDITIONED, Dense, NetworkSize, NetworkWeights, Norm, Shape};
 use crate::render::{Font, Rasterizer};
 use crate::table::{GlyphNetwork, Header, Precision};
 

@@ -10,8 +10,9 @@ use crate::table::PartsDecoder;
 /// Decoded models take up to this many bytes unless the caller says otherwise: about 700 glyphs.
 const DEFAULT_CACHE: usize = 8 << 20;
 
-/// Draws a font's glyphs. A glyph that a network draws is there at the network's sizes only. With the feature `fallback`, a glyph that has no model is drawn from its unhinted
-/// outline; without it, such a glyph is [`Error::MissingGlyph`].
+/// Draws a font's glyphs. A glyph that a network draws is there at the network's sizes only. With the feature
+/// `fallback`, a glyph that has no model is drawn from its unhinted outline; without it, such a glyph is
+/// [`Error::MissingGlyph`].
 pub struct Rasterizer<'a> {
     font: Font<'a>,
     parts: PartsDecoder,

@@ -7,13 +7,19 @@ use wide::f32x8;
 use super::dense::{LANES, Layer, relu};
 use super::encoding::{encode, tanh};
 use super::norm::norm;
-use super::{CLASSES, NORMS, NetworkSize, NetworkWeights, Norm, OUT, Shape, TRUNK_LAYERS, is_conditioned};
+use super::{
+    CLASSES, CONDITIONED, NORMALISED, NORMS, NetworkSize, NetworkWeights, Norm, OUT, REPLACING, Shape,
+    TRUNK_LAYERS, coverage_of,
+};
 use crate::error::Error;
 
 /// Tiles of eight pixels that a stage takes together, so that the widest layers' stay in a cache.
 const BLOCK: usize = 8;
 /// The trunk's layers, in stages: a batch norm stands behind each but the last, and needs all pixels.
-const STAGES: [Range<usize>; NORMS + 1] = [0..2, 2..5, 5..9, 9..11];
+const STAGES: [Range<usize>; NORMS + 1] = {
+    let [a, b, c] = NORMALISED;
+    [0..a + 1, a + 1..b + 1, b + 1..c + 1, c + 1..OUT]
+};
 
 /// A coordinate of the pixels number `index` of `side` along an axis, from −1 to 1.
 pub fn coordinate(index: usize, side: usize) -> f64 {
@@ -65,7 +71,7 @@ impl Network {
         weights.check()?;
         let NetworkWeights { shape, sizes, dense, norms } = weights;
         let encoders = dense.len() - TRUNK_LAYERS;
-        let latent = |layer: usize| if is_conditioned(layer) { usize::from(shape.latent) } else { 0 };
+        let latent = |layer: usize| if CONDITIONED.contains(&layer) { usize::from(shape.latent) } else { 0 };
         // One after the other, so that a layer's numbers are there only once but for the one in the works.
         let mut dense = dense.into_iter();
         let encoder = dense.by_ref().take(encoders).map(|dense| Layer::new(dense, 0)).collect();
@@ -184,7 +190,7 @@ impl Network {
     fn layer(&self, number: usize, base: &[f32], x: &[f32x8], tiles: usize) -> Vec<f32x8> {
         let layer = &self.trunk[number];
         let mut y = vec![f32x8::ZERO; tiles * layer.outputs()];
-        let residual = self.shape.residual && matches!(number, 2..=4 | 6..=10);
+        let residual = self.shape.residual && !REPLACING.contains(&number);
         if number == OUT {
             layer.apply(base, x, &mut y, |sum, _| sum);
         } else if residual {
@@ -213,5 +219,5 @@ fn level(scores: &[f32; CLASSES]) -> u8 {
             class = other;
         }
     }
-    ((class * 255 + 10) / 20) as u8
+    coverage_of(class)
 }

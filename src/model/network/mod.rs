@@ -19,6 +19,7 @@ use crate::table::MAX_TRAINED_PPEM;
 
 pub use encoding::{ENCODED, WAVES, encode};
 pub use eval::{Network, condition, coordinate, positions};
+pub use norm::EPSILON as NORM_EPSILON;
 
 /// The levels of coverage that a network tells apart: its outputs.
 pub const CLASSES: usize = 21;
@@ -38,12 +39,18 @@ pub const ENCODER_LAYERS: usize = 6;
 pub const TRUNK_LAYERS: usize = 12;
 /// The trunk's last layer.
 const OUT: usize = TRUNK_LAYERS - 1;
-/// Batch norms of the trunk: behind its layers number 1, 4 and 8, counted from 0.
-pub const NORMS: usize = 3;
+/// Batch norms of the trunk.
+pub const NORMS: usize = NORMALISED.len();
+/// The layers of the trunk, counted from 0, behind which a batch norm stands.
+pub const NORMALISED: [usize; 3] = [1, 4, 8];
+/// The layers of the trunk to which the numbers that stand for a size come beside those of the pixel.
+pub const CONDITIONED: [usize; 2] = [0, 5];
+/// The hidden layers of the trunk whose output replaces their input; the others add theirs, see [`Shape::residual`].
+pub const REPLACING: [usize; 3] = [0, 1, 5];
 
-/// Whether the numbers that stand for a size come to one of the trunk's layers beside those of the pixel.
-fn is_conditioned(layer: usize) -> bool {
-    layer == 0 || layer == 5
+/// The level of coverage, 0–255, that a class stands for: its multiple of 5 %.
+pub fn coverage_of(class: usize) -> u8 {
+    ((class * 255 + (CLASSES - 1) / 2) / (CLASSES - 1)) as u8
 }
 
 /// How a network is built.
@@ -85,7 +92,7 @@ impl Shape {
         layers.extend((0..TRUNK_LAYERS).map(|layer| {
             let inputs = if layer == 0 { self.positions() } else { width };
             let outputs = if layer == OUT { CLASSES } else { width };
-            (inputs + if is_conditioned(layer) { latent } else { 0 }, outputs)
+            (inputs + if CONDITIONED.contains(&layer) { latent } else { 0 }, outputs)
         }));
         layers
     }

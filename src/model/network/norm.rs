@@ -6,7 +6,7 @@ use super::Norm;
 use super::dense::LANES;
 
 /// What is added to a variance, so that it is never 0.
-pub(super) const EPSILON: f64 = 1e-3;
+pub const EPSILON: f64 = 1e-3;
 
 /// Norms each feature over the first `pixels` pixels of `x`, in place. `x` has `gamma.len()` features of eight pixels
 /// each for one tile after the other.
