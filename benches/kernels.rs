@@ -10,8 +10,8 @@ use std::error::Error;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use nfr::model::gridfit::{GridFit, Weights};
-use nfr::table::{TAG, Table};
+use nfr::internals::model::gridfit::{GridFit, Weights};
+use nfr::internals::table::{TAG, Table};
 use nfr::{Font, Scratch};
 use read_fonts::{FontRef, TableProvider};
 

@@ -6,14 +6,13 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "../tests/samples/mod.rs"]
-mod samples;
+mod network;
 
 use std::error::Error;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use nfr::model::network::{Network, Shape};
+use nfr::internals::model::network::{Network, Shape};
 
 /// Widths of trunk, latent vector and encoder.
 const WIDTHS: [[u16; 3]; 3] = [[96, 32, 32], [784, 0, 0], [784, 1420, 300]];
@@ -23,7 +22,7 @@ const SIZES: [u16; 2] = [18, 61];
 fn measure(criterion: &mut Criterion) -> Result<(), Box<dyn Error>> {
     for [width, latent, encoder] in WIDTHS {
         let shape = Shape { width, latent, encoder, frequencies: true, residual: true };
-        let network = Network::new(samples::network(shape, &SIZES, 1))?;
+        let network = Network::new(network::network(shape, &SIZES, 1))?;
         for (index, size) in network.sizes().iter().enumerate() {
             let name = format!("draw {} pixels, {width} wide, latent {latent}", u32::from(size.side).pow(2));
             criterion.bench_function(&name, |bencher| {

@@ -17,8 +17,6 @@ pub enum Error {
     MissingGlyph(u16),
     /// A parameter that the caller passed does not make sense.
     InvalidParameter(String),
-    /// Reading or writing a file failed.
-    Io(String),
 }
 
 impl fmt::Display for Error {
@@ -31,7 +29,6 @@ impl fmt::Display for Error {
                 write!(f, "glyph {gid} has no model in this font; convert the font with it selected")
             }
             Self::InvalidParameter(what) => write!(f, "invalid parameter: {what}"),
-            Self::Io(what) => write!(f, "{what}"),
         }
     }
 }

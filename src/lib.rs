@@ -9,30 +9,27 @@
 //! # }
 //! # assert!(draw(b"no font").is_err());
 //! ```
-//!
-//! With the default feature `convert`, `convert` trains and writes such fonts and `compare` measures them; with `lab`,
-//! `lab` has the models and experiments of the paper that the idea comes from; without default features this is the
-//! renderer alone. `spec/nfrt.md` in the repository describes the table.
 
 #![forbid(unsafe_code)]
 
+#[doc(hidden)]
 pub mod error;
+#[doc(hidden)]
 pub mod model;
+#[doc(hidden)]
 pub mod render;
+#[doc(hidden)]
 pub mod table;
-
-#[cfg(feature = "convert")]
-pub mod cli;
-#[cfg(feature = "convert")]
-pub mod compare;
-#[cfg(feature = "convert")]
-pub mod convert;
-#[cfg(feature = "lab")]
-pub mod lab;
 
 pub use error::Error;
 pub use model::Target;
 pub use render::{Bitmap, Font, Glyph, MAX_PEN, Placement, Rasterizer, Scratch, Setting};
+
+/// What the converter shares with the renderer. No promises: anything in here may change in any release.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::{error, model, render, table};
+}
 
 /// Runs the examples of README as tests.
 #[cfg(doctest)]

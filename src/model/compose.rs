@@ -35,13 +35,13 @@ pub fn snapped(offset: i16, ppem: usize, units_per_em: u16) -> i32 {
 }
 
 /// The place in pixels of what does not snap, at an offset in em.
-pub(crate) fn unsnapped(offset: f32, ppem: f32) -> f32 {
+pub fn unsnapped(offset: f32, ppem: f32) -> f32 {
     floor(offset * ppem * GRID + 0.5) as f32 / GRID
 }
 
 /// Where a part stands, ready to evaluate.
 #[derive(Debug, Clone)]
-pub(crate) struct Origin {
+pub struct Origin {
     scale: Scale,
     /// In em.
     offset: [f32; 2],
@@ -51,7 +51,7 @@ pub(crate) struct Origin {
 
 impl Origin {
     /// The origin of a glyph that stands where it is.
-    pub(crate) fn zero(scale: Scale) -> Self {
+    pub fn zero(scale: Scale) -> Self {
         Self { scale, offset: [0.0; 2], moves: [Vec::new(), Vec::new()] }
     }
 
@@ -60,7 +60,7 @@ impl Origin {
     /// # Errors
     ///
     /// `Malformed` if it has not one snap for each size.
-    pub(crate) fn new(part: &Part, scale: Scale) -> Result<Self, Error> {
+    pub fn new(part: &Part, scale: Scale) -> Result<Self, Error> {
         if part.snaps.iter().any(|snaps| !snaps.is_empty() && snaps.len() != scale.sizes()) {
             return Err(Error::Malformed(format!(
                 "glyph {} as a part of others has the wrong number of places; convert the font again",
@@ -81,7 +81,7 @@ impl Origin {
 
     /// The place in pixels at a size. A part that snaps stands where it does at the trained size that
     /// stands for this one; beyond the trained sizes nothing snaps.
-    pub(crate) fn at(&self, ppem: f32) -> [f32; 2] {
+    pub fn at(&self, ppem: f32) -> [f32; 2] {
         let fit = self.scale.fit(ppem);
         [0, 1].map(|axis| match self.moves[axis].get(fit.size) {
             Some(moved) => self.offset[axis] * fit.grid + moved * fit.strength,
@@ -90,7 +90,7 @@ impl Origin {
     }
 
     /// The memory that it takes, in bytes.
-    pub(crate) fn memory(&self) -> usize {
+    pub fn memory(&self) -> usize {
         size_of::<Self>() + self.moves.iter().map(Vec::len).sum::<usize>() * size_of::<f32>()
     }
 }

@@ -4,7 +4,6 @@
 //! Every operation in here and in drawing is an IEEE 754 addition, subtraction, multiplication, division, square root,
 //! comparison or conversion in a fixed order, so that the pixels are the same on every machine.
 
-#[cfg(feature = "convert")]
 mod adjust;
 
 use super::contour::{FINEST, Frame, LEVELS, Polygons, Tracer};
@@ -34,7 +33,7 @@ pub const BOX_SLACK: f32 = 1.0 / 64.0;
 /// The largest size that is drawn, in pixels per em.
 pub const MAX_PPEM: f32 = 2048.0;
 /// The longest side of a bitmap in pixels.
-pub(crate) const MAX_SIDE: u32 = 8192;
+pub const MAX_SIDE: u32 = 8192;
 
 /// One axis of the warp: knots in font units and their hinted positions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -90,7 +89,7 @@ impl Scale {
 
     /// How a size is fitted: as the nearest whole one, halves upwards, whose pixel positions stay as they are, so that
     /// edges are as crisp. If that is no trained size, nothing is moved.
-    pub(crate) fn fit(&self, ppem: f32) -> Fit {
+    pub fn fit(&self, ppem: f32) -> Fit {
         let whole = (ppem + 0.5) as usize;
         if (usize::from(self.first_ppem)..=usize::from(self.last_ppem)).contains(&whole) {
             Fit { size: whole - usize::from(self.first_ppem), grid: whole as f32, strength: 1.0 }
@@ -102,17 +101,17 @@ impl Scale {
 
 /// How a size is fitted to the pixel grid.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Fit {
+pub struct Fit {
     /// The trained size whose displacements count, by its index.
-    pub(crate) size: usize,
+    pub size: usize,
     /// The size in pixels per em that they belong to.
-    pub(crate) grid: f32,
+    pub grid: f32,
     /// What displacements are multiplied with: 1, or 0 where they do not count.
-    pub(crate) strength: f32,
+    pub strength: f32,
 }
 
 /// Checks that a size is drawn at all.
-pub(crate) fn check_ppem(ppem: f32) -> Result<(), Error> {
+pub fn check_ppem(ppem: f32) -> Result<(), Error> {
     if ppem > 0.0 && ppem <= MAX_PPEM {
         return Ok(());
     }
@@ -247,7 +246,6 @@ impl GridFit {
     }
 
     /// Finds out anew how the patterns move the outline.
-    #[cfg(feature = "convert")]
     fn locate(&mut self) {
         let mut levels = std::mem::take(&mut self.levels);
         levels.iter_mut().for_each(|polygons| polygons.locate(&self.frame()));
@@ -264,12 +262,7 @@ impl GridFit {
     }
 
     /// The outline for a size. It is traced into `fresh` if it is not at hand.
-    pub(crate) fn polygons<'a>(
-        &'a self,
-        ppem: f32,
-        tracer: &mut Tracer,
-        fresh: &'a mut Polygons,
-    ) -> &'a Polygons {
+    pub fn polygons<'a>(&'a self, ppem: f32, tracer: &mut Tracer, fresh: &'a mut Polygons) -> &'a Polygons {
         if let Some(level) = LEVELS.iter().position(|(below, _)| ppem < *below) {
             return &self.levels[level];
         }
@@ -278,12 +271,12 @@ impl GridFit {
     }
 
     /// Whether there is nothing to draw.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.field.is_empty()
     }
 
     /// Knots of an axis in em.
-    pub(crate) fn knots(&self, axis: usize) -> &[f32] {
+    pub fn knots(&self, axis: usize) -> &[f32] {
         &self.knots[axis]
     }
 
@@ -296,7 +289,7 @@ impl GridFit {
     }
 
     /// Hinted positions in pixels of an axis's knots, ascending.
-    pub(crate) fn hinted_knots(&self, axis: usize, ppem: f32) -> impl Iterator<Item = f32> + '_ {
+    pub fn hinted_knots(&self, axis: usize, ppem: f32) -> impl Iterator<Item = f32> + '_ {
         let fit = self.scale.fit(ppem);
         let knots = &self.knots[axis];
         let moves = &self.moves[axis][fit.size * knots.len()..];
@@ -337,7 +330,7 @@ impl GridFit {
     }
 
     /// The whole pixels that hinted knots, the first and the last, span along an axis; `None` where there is none.
-    pub(crate) fn pixels(&self, axis: usize, ppem: f32, ends: [Option<f32>; 2], origin: f32) -> (i32, i32) {
+    pub fn pixels(&self, axis: usize, ppem: f32, ends: [Option<f32>; 2], origin: f32) -> (i32, i32) {
         let low = ends[0].unwrap_or(self.bounds[axis] * ppem);
         let high = ends[1].unwrap_or(self.bounds[axis + 2] * ppem);
         let first = floor(low + origin + BOX_SLACK);
@@ -345,7 +338,7 @@ impl GridFit {
     }
 
     /// The weight of each pattern at a size, in pixels; nothing where nothing is moved.
-    pub(crate) fn strengths(&self, ppem: f32) -> impl Iterator<Item = f32> + '_ {
+    pub fn strengths(&self, ppem: f32) -> impl Iterator<Item = f32> + '_ {
         let fit = self.scale.fit(ppem);
         self.embedding[fit.size * self.rank..][..self.rank].iter().map(move |weight| weight * fit.strength)
     }
@@ -356,7 +349,7 @@ impl GridFit {
 /// # Errors
 ///
 /// `LimitExceeded` for one that is larger than `MAX_SIDE` on a side.
-pub(crate) fn placement_of(pixels: [(i32, i32); 2], ppem: f32) -> Result<Placement, Error> {
+pub fn placement_of(pixels: [(i32, i32); 2], ppem: f32) -> Result<Placement, Error> {
     let [(left, right), (bottom, top)] = pixels;
     let (width, height) = (right.abs_diff(left), top.abs_diff(bottom));
     if width > MAX_SIDE || height > MAX_SIDE {

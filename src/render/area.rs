@@ -7,7 +7,7 @@
 use wide::{i16x8, i32x8, u8x16};
 
 /// Units in a pixel along each axis.
-pub(crate) const UNIT: i32 = 1 << SHIFT;
+pub const UNIT: i32 = 1 << SHIFT;
 const SHIFT: i32 = 9;
 const MASK: i32 = UNIT - 1;
 /// What a pixel that is covered in full sums up to.

@@ -35,7 +35,7 @@ impl GridFit {
 
 /// Draws models, each at a place of its own (pixels), into one bitmap that has room for all of them: its pixels are
 /// what they cover together.
-pub(crate) fn draw<'a>(
+pub fn draw<'a>(
     models: &(impl Iterator<Item = (&'a GridFit, [f32; 2])> + Clone),
     ppem: f32,
     placement: Placement,

@@ -199,7 +199,7 @@ impl<'a> Font<'a> {
 }
 
 /// Opens one font of a file.
-pub(crate) fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
+pub fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
     match read_fonts::FileRef::new(data) {
         Err(_) => Err(Error::Malformed(
             "these bytes are no OpenType font; pass a .ttf file or a collection of them".into(),
@@ -224,7 +224,7 @@ pub(crate) fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
 }
 
 /// Font units in an em, checked.
-pub(crate) fn head_units(font: &FontRef<'_>) -> Result<u16, Error> {
+pub fn head_units(font: &FontRef<'_>) -> Result<u16, Error> {
     let head = font.head().map_err(|e| {
         Error::Malformed(format!("table 'head' cannot be read ({e}); the file may be truncated"))
     })?;

@@ -21,12 +21,12 @@ enum Kind {
 
 impl Glyph {
     /// A glyph that has a model of its own.
-    pub(crate) fn of_model(model: Arc<GridFit>, scale: Scale) -> Self {
+    pub fn of_model(model: Arc<GridFit>, scale: Scale) -> Self {
         Self(Kind::Parts(vec![(model, Origin::zero(scale))]))
     }
 
     /// A glyph that is put together from others' models.
-    pub(crate) fn of_parts(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
+    pub fn of_parts(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
         Self(Kind::Parts(parts))
     }
 
@@ -149,7 +149,7 @@ fn place(origin: &Origin, setting: Setting) -> [f32; 2] {
 }
 
 /// The box around two bitmaps; one without pixels takes no room.
-pub(crate) fn union(a: Placement, b: Placement) -> Placement {
+pub fn union(a: Placement, b: Placement) -> Placement {
     match (a.area(), b.area()) {
         (0, _) => return b,
         (_, 0) => return a,

@@ -5,17 +5,14 @@ mod draw;
 mod font;
 mod glyph;
 mod network;
-#[cfg(any(feature = "convert", feature = "fallback"))]
-pub mod outline;
+
 mod rasterizer;
 
 pub use draw::Scratch;
 pub use font::Font;
-#[cfg(feature = "convert")]
-pub(crate) use font::{head_units, open};
+pub use font::{head_units, open};
 pub use glyph::Glyph;
-#[cfg(feature = "convert")]
-pub(crate) use glyph::union;
+pub use glyph::union;
 pub use rasterizer::Rasterizer;
 
 use crate::error::Error;

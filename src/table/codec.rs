@@ -7,7 +7,6 @@ use super::contexts::{
     CLIPPED, COEFFICIENT, COUNT, EMBEDDING, INK, LEAST, Model, PATTERN, PLACE, UNITS, class,
 };
 use super::priors::PRIOR;
-#[cfg(feature = "convert")]
 use super::range::Encoder;
 use super::range::{Coder, Decoder, End};
 use super::warp;
@@ -33,7 +32,7 @@ const _: () = assert!(CLIP == -92 && BORDER == 600);
 
 /// The parts of a coded model, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Section {
+pub enum Section {
     Header,
     Warp,
     Field,
@@ -46,8 +45,7 @@ fn damaged(what: &str) -> Error {
 }
 
 /// Whether a model is larger than readers accept.
-#[cfg(feature = "convert")]
-pub(super) fn exceeds_limits(weights: &Weights) -> bool {
+pub fn exceeds_limits(weights: &Weights) -> bool {
     let knots = [&weights.warp_x, &weights.warp_y].map(|w| w.knots.len());
     weights.cells.iter().any(|c| *c > MAX_CELLS)
         || knots.iter().any(|k| *k > usize::from(MAX_KNOTS))
@@ -55,7 +53,6 @@ pub(super) fn exceeds_limits(weights: &Weights) -> bool {
 }
 
 /// Turns weights into bytes. Their lengths fit each other and the limits of this module.
-#[cfg(feature = "convert")]
 pub fn encode(weights: &Weights, scale: Scale) -> Vec<u8> {
     let mut model = Model::new(Encoder::new(), &PRIOR);
     // A coder that writes finds nothing wrong with weights within the limits.
@@ -85,12 +82,12 @@ fn finish(coder: Decoder<'_>, damaged: impl Fn(&str) -> Error) -> Result<(), Err
 }
 
 /// Refuses to go on behind the end.
-pub(super) fn check<C: Coder>(coder: &C) -> Result<(), Error> {
+pub fn check<C: Coder>(coder: &C) -> Result<(), Error> {
     if coder.is_spent() { Err(damaged("ends early")) } else { Ok(()) }
 }
 
 /// Codes a glyph's weights; calls `after` behind each section.
-pub(super) fn code<C: Coder>(
+pub fn code<C: Coder>(
     model: &mut Model<'_, C>,
     weights: &mut Weights,
     scale: Scale,
@@ -306,8 +303,7 @@ fn embedding<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: S
 }
 
 /// Turns lists of places, one number for each size, into bytes.
-#[cfg(feature = "convert")]
-pub(super) fn encode_places(lists: &[&[i8]]) -> Vec<u8> {
+pub fn encode_places(lists: &[&[i8]]) -> Vec<u8> {
     let mut model = Model::new(Encoder::new(), &PRIOR);
     for list in lists {
         places(&mut model, &mut list.to_vec());
@@ -316,7 +312,7 @@ pub(super) fn encode_places(lists: &[&[i8]]) -> Vec<u8> {
 }
 
 /// Reads `count` lists of places back, one after the other.
-pub(super) fn decode_places(bytes: &[u8], count: usize, sizes: usize) -> Result<Vec<i8>, Error> {
+pub fn decode_places(bytes: &[u8], count: usize, sizes: usize) -> Result<Vec<i8>, Error> {
     let damaged = |what: &str| Error::Malformed(format!("the list of places {what}; convert the font again"));
     let mut model = Model::new(Decoder::new(bytes), &PRIOR);
     let mut lists = vec![0; count * sizes];

@@ -15,7 +15,7 @@ const TAIL_LENGTHS: usize = 7;
 
 /// A kind of number and the contexts that it is coded in.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Kind {
+pub struct Kind {
     /// How many contexts each of the three sets has. Only the first set is not empty: nothing is mixed.
     contexts: [usize; 3],
     /// Questions: is it zero, is it negative, has it more than 1, 2, … bits. The last stands for all longer ones.
@@ -43,34 +43,34 @@ const SHAPES: [([usize; 3], usize); 12] = [
 ];
 
 /// Counts: of knots, patterns and cells.
-pub(super) const COUNT: Kind = KINDS.0[0];
+pub const COUNT: Kind = KINDS.0[0];
 /// Knots and the box, in font units.
-pub(super) const UNITS: Kind = KINDS.0[1];
+pub const UNITS: Kind = KINDS.0[1];
 /// The predictor of a knot, bit by bit.
-pub(super) const PREDICTOR: Kind = KINDS.0[2];
+pub const PREDICTOR: Kind = KINDS.0[2];
 /// By how many whole pixels a prediction is off.
-pub(super) const JUMP: Kind = KINDS.0[3];
+pub const JUMP: Kind = KINDS.0[3];
 /// By how much more it is off.
-pub(super) const FRACTION: Kind = KINDS.0[4];
+pub const FRACTION: Kind = KINDS.0[4];
 /// Whether a coefficient is clipped.
-pub(super) const CLIPPED: Kind = KINDS.0[5];
+pub const CLIPPED: Kind = KINDS.0[5];
 /// Whether a coefficient is the least.
-pub(super) const LEAST: Kind = KINDS.0[6];
+pub const LEAST: Kind = KINDS.0[6];
 /// The residual of any other coefficient.
-pub(super) const COEFFICIENT: Kind = KINDS.0[7];
+pub const COEFFICIENT: Kind = KINDS.0[7];
 /// A node of a pattern.
-pub(super) const PATTERN: Kind = KINDS.0[8];
+pub const PATTERN: Kind = KINDS.0[8];
 /// The weight of a pattern, against that of the size before.
-pub(super) const EMBEDDING: Kind = KINDS.0[9];
+pub const EMBEDDING: Kind = KINDS.0[9];
 /// A place of a part, against that of the size before.
-pub(super) const PLACE: Kind = KINDS.0[10];
+pub const PLACE: Kind = KINDS.0[10];
 /// Whether there is ink.
-pub(super) const INK: Kind = KINDS.0[11];
+pub const INK: Kind = KINDS.0[11];
 
 /// All slots.
-pub(super) const SLOTS: usize = KINDS.1;
+pub const SLOTS: usize = KINDS.1;
 /// All mixtures.
-pub(super) const MIXTURES: usize = KINDS.2;
+pub const MIXTURES: usize = KINDS.2;
 
 const KINDS: ([Kind; SHAPES.len()], usize, usize) = {
     let mut kinds = [Kind { contexts: [0; 3], questions: 0, slot: 0, mix: 0 }; SHAPES.len()];
@@ -91,14 +91,14 @@ const KINDS: ([Kind; SHAPES.len()], usize, usize) = {
 };
 
 /// Codes numbers with a coder, and learns from them.
-pub(super) struct Model<'p, C> {
-    pub(super) coder: C,
+pub struct Model<'p, C> {
+    pub coder: C,
     prior: &'p Prior,
     slots: Vec<u16>,
 }
 
 impl<'p, C: Coder> Model<'p, C> {
-    pub(super) fn new(coder: C, prior: &'p Prior) -> Self {
+    pub fn new(coder: C, prior: &'p Prior) -> Self {
         Self { coder, prior, slots: prior.slots.to_vec() }
     }
 
@@ -145,12 +145,12 @@ impl<'p, C: Coder> Model<'p, C> {
     }
 
     /// Codes whether something is the case.
-    pub(super) fn flag(&mut self, kind: Kind, contexts: [usize; 3], value: bool) -> bool {
+    pub fn flag(&mut self, kind: Kind, contexts: [usize; 3], value: bool) -> bool {
         self.ask(kind, contexts, 0, value)
     }
 
     /// Codes a number of `width` bits, each of which has the bits before it as its context.
-    pub(super) fn bits(&mut self, kind: Kind, context: usize, width: u32, value: usize) -> usize {
+    pub fn bits(&mut self, kind: Kind, context: usize, width: u32, value: usize) -> usize {
         (0..width).rev().fold(1, |known, at| {
             // A context has as many slots as the number has values; the first of them is not used.
             let slot = kind.slot + (context << width) + known;
@@ -160,7 +160,7 @@ impl<'p, C: Coder> Model<'p, C> {
 
     /// Codes a number with its sign.
     #[inline]
-    pub(super) fn signed(&mut self, kind: Kind, contexts: [usize; 3], value: i32) -> i32 {
+    pub fn signed(&mut self, kind: Kind, contexts: [usize; 3], value: i32) -> i32 {
         if !self.ask(kind, contexts, 0, value != 0) {
             return 0;
         }
@@ -171,7 +171,7 @@ impl<'p, C: Coder> Model<'p, C> {
 
     /// Codes a number that is at least 1.
     #[inline]
-    pub(super) fn positive(&mut self, kind: Kind, contexts: [usize; 3], value: u32) -> u32 {
+    pub fn positive(&mut self, kind: Kind, contexts: [usize; 3], value: u32) -> u32 {
         let length = if C::WRITES { 31 - value.max(1).leading_zeros() } else { 0 };
         let mut below = 0;
         while below < 31 && self.ask(kind, contexts, 2 + below as usize, below < length) {
@@ -194,7 +194,7 @@ impl<'p, C: Coder> Model<'p, C> {
 
 /// The number of limits that a value reaches: contexts are classes of values.
 #[inline]
-pub(super) fn class<const N: usize>(value: i32, limits: [i32; N]) -> usize {
+pub fn class<const N: usize>(value: i32, limits: [i32; N]) -> usize {
     limits.iter().filter(|limit| value >= **limit).count()
 }
 

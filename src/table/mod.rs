@@ -2,25 +2,20 @@
 
 pub mod codec;
 mod composed;
-mod contexts;
-#[cfg(feature = "convert")]
-mod cost;
+pub mod contexts;
+
 mod gids;
 pub mod network;
 mod networks;
-mod priors;
-mod range;
+pub mod priors;
+pub mod range;
 mod reader;
 mod warp;
-#[cfg(feature = "convert")]
 mod writer;
 
-#[cfg(feature = "convert")]
-pub use cost::{Cost, cost, learn_priors};
 pub use gids::Gids;
 pub use network::Precision;
 pub use reader::{PartsDecoder, Table};
-#[cfg(feature = "convert")]
 pub use writer::{GlyphModel, GlyphNetwork, write};
 
 use crate::model::Target;
@@ -37,13 +32,13 @@ pub const MINOR_VERSION: u16 = 0;
 /// The minor version of a table that has networks.
 pub const NETWORK_MINOR_VERSION: u16 = 1;
 /// Bytes before the arrays.
-pub(crate) const HEADER_LEN: usize = 52;
+pub const HEADER_LEN: usize = 52;
 /// The table says where every model of so many begins.
-pub(crate) const BLOCK: usize = 64;
+pub const BLOCK: usize = 64;
 /// The flag that says that outlines were dropped.
-pub(crate) const OUTLINES_DROPPED: u8 = 1;
+pub const OUTLINES_DROPPED: u8 = 1;
 /// The flag that says that networks follow the lists of places.
-pub(crate) const NETWORKS: u8 = 2;
+pub const NETWORKS: u8 = 2;
 /// No glyph is put together from more parts than this.
 pub const MAX_PARTS: usize = 16;
 /// The places of parts that snap take no more than this, unpacked.

@@ -30,7 +30,6 @@ impl Precision {
     }
 
     /// The most steps either way that are written.
-    #[cfg(feature = "convert")]
     fn most(self) -> f32 {
         match self {
             Self::Eight => 127.0,
@@ -180,7 +179,6 @@ impl<'a> Reader<'a> {
 /// # Errors
 ///
 /// As [`NetworkWeights::check`].
-#[cfg(feature = "convert")]
 pub fn encode(weights: &NetworkWeights, precision: Precision) -> Result<Vec<u8>, Error> {
     weights.check()?;
     let shape = &weights.shape;
@@ -207,7 +205,6 @@ pub fn encode(weights: &NetworkWeights, precision: Precision) -> Result<Vec<u8>,
     Ok(out)
 }
 
-#[cfg(feature = "convert")]
 fn put_dense(out: &mut Vec<u8>, dense: &Dense, precision: Precision) {
     let mut largest = vec![0f32; dense.outputs];
     for row in dense.weights.chunks_exact(dense.outputs) {

@@ -5,9 +5,9 @@ use super::range::ONE;
 
 /// The odds of each slot in 1/65536 and the weights of each mixture in 1/32.
 #[derive(Debug, Clone)]
-pub(super) struct Prior {
-    pub(super) slots: [u16; SLOTS],
-    pub(super) weights: [[u8; 3]; MIXTURES],
+pub struct Prior {
+    pub slots: [u16; SLOTS],
+    pub weights: [[u8; 3]; MIXTURES],
 }
 
 /// The table of the specification: a character for each slot, then three for each mixture; 64 characters from `0`
@@ -15,10 +15,10 @@ pub(super) struct Prior {
 const TEXT: &[u8] = include_bytes!("../../spec/priors.txt");
 
 /// The first of the 64 characters.
-pub(super) const DIGIT: u8 = b'0';
+pub const DIGIT: u8 = b'0';
 
 /// The priors that the format prescribes.
-pub(super) static PRIOR: Prior = {
+pub static PRIOR: Prior = {
     let mut prior = Prior { slots: [1 << 15; SLOTS], weights: [[13; 3]; MIXTURES] };
     let (mut at, mut number) = (0, 0);
     while at < TEXT.len() {
@@ -38,7 +38,7 @@ pub(super) static PRIOR: Prior = {
 };
 
 /// The odds that a digit of the table stands for.
-pub(super) const fn odds(digit: u8) -> u16 {
+pub const fn odds(digit: u8) -> u16 {
     (squash((digit as i32 - 32) * 64 + 32) * 16 + 8) as u16
 }
 
@@ -49,7 +49,7 @@ const CURVE: [i32; 33] = [
 ];
 
 /// The logistic function at 256 steps to the unit, in 1/4096: from what contexts say to odds.
-pub(super) const fn squash(said: i32) -> u32 {
+pub const fn squash(said: i32) -> u32 {
     if said > 2047 {
         return ONE - 1;
     }
@@ -61,7 +61,7 @@ pub(super) const fn squash(said: i32) -> u32 {
 }
 
 /// Its inverse, from odds to what a context says: the least number with at least those odds.
-pub(super) static STRETCH: [i16; ONE as usize] = {
+pub static STRETCH: [i16; ONE as usize] = {
     let mut table = [2047; ONE as usize];
     let (mut said, mut odds) = (-2047, 0);
     while odds < ONE {

@@ -6,10 +6,10 @@
 //! to stay short.
 
 /// What a probability is a share of.
-pub(super) const ONE: u32 = 1 << 12;
+pub const ONE: u32 = 1 << 12;
 
 /// Codes decisions: writes them, reads them, or adds up what they would cost.
-pub(super) trait Coder {
+pub trait Coder {
     /// Whether the decisions are known beforehand.
     const WRITES: bool;
 
@@ -68,26 +68,23 @@ impl Interval {
 }
 
 /// Writes decisions.
-#[cfg(feature = "convert")]
 #[derive(Debug)]
-pub(super) struct Encoder {
+pub struct Encoder {
     interval: Interval,
     bytes: Vec<u8>,
 }
 
-#[cfg(feature = "convert")]
 impl Encoder {
-    pub(super) fn new() -> Self {
+    pub fn new() -> Self {
         Self { interval: Interval::WHOLE, bytes: Vec::new() }
     }
 
-    pub(super) fn finish(mut self) -> Vec<u8> {
+    pub fn finish(mut self) -> Vec<u8> {
         self.bytes.extend(self.interval.last());
         self.bytes
     }
 }
 
-#[cfg(feature = "convert")]
 impl Coder for Encoder {
     const WRITES: bool = true;
 
@@ -102,7 +99,7 @@ impl Coder for Encoder {
 
 /// Reads decisions. Beyond the end of the bytes there are zeros.
 #[derive(Debug)]
-pub(super) struct Decoder<'a> {
+pub struct Decoder<'a> {
     interval: Interval,
     bytes: &'a [u8],
     /// How many bytes are settled; four more are in `window`.
@@ -112,13 +109,13 @@ pub(super) struct Decoder<'a> {
 
 /// How a message can fail to end where its bytes do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum End {
+pub enum End {
     Early,
     Late,
 }
 
 impl<'a> Decoder<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    pub fn new(bytes: &'a [u8]) -> Self {
         let mut decoder = Self { interval: Interval::WHOLE, bytes, settled: 0, window: 0 };
         decoder.window = (0..4).fold(0, |window, at| window << 8 | decoder.byte(at));
         decoder
@@ -129,7 +126,7 @@ impl<'a> Decoder<'a> {
     }
 
     /// Checks that the message ends where its bytes do.
-    pub(super) fn finish(self) -> Result<(), End> {
+    pub fn finish(self) -> Result<(), End> {
         let length = self.settled + usize::from(self.interval.last().is_some());
         match length.cmp(&self.bytes.len()) {
             std::cmp::Ordering::Greater => Err(End::Early),

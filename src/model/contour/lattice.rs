@@ -12,7 +12,7 @@ const NONE: u32 = u32::MAX;
 
 /// Working memory that tracing reuses.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Lattice {
+pub struct Lattice {
     /// The field contracted along x: for each row of coefficients, a value for each lattice column.
     contracted: Vec<f32>,
     /// The field on the lattice, bottom row first.
@@ -32,7 +32,7 @@ pub(crate) struct Lattice {
 impl Lattice {
     /// Finds the points where the lattice's edges cross the outline, and which follows which with the inside on its
     /// left. `field` has two more coefficients than `cells` on each axis.
-    pub(crate) fn trace(&mut self, field: &[f32], cells: [usize; 2]) {
+    pub fn trace(&mut self, field: &[f32], cells: [usize; 2]) {
         self.contract(field, cells);
         self.sample(cells);
         self.find_active(field, cells);
@@ -137,7 +137,7 @@ impl Lattice {
     }
 
     /// Visits each loop once: its points in order, from the one that was found first.
-    pub(crate) fn loops(&mut self, mut visit: impl FnMut(&[[f32; 2]])) {
+    pub fn loops(&mut self, mut visit: impl FnMut(&[[f32; 2]])) {
         for first in 0..self.points.len() {
             self.chain.clear();
             let mut at = first;

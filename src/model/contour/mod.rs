@@ -22,31 +22,31 @@ pub const MIN_WIDTH: f32 = 0.12;
 /// No side is cut nearer to its ends than this share of it.
 pub const MIN_CUT: f32 = 1.0 / 64.0;
 /// Vertices are put in place so many at a time.
-pub(crate) const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 /// Closed polygons with the inside on their left. Lists of vertices are padded to a multiple of `LANES`.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Polygons {
+pub struct Polygons {
     /// Places along x and y, in em.
-    pub(crate) at: [Vec<f32>; 2],
+    pub at: [Vec<f32>; 2],
     /// For each axis, how many knots are at or below each vertex.
-    pub(crate) knots: [Vec<u8>; 2],
+    pub knots: [Vec<u8>; 2],
     /// For each pattern, its value at each vertex.
-    pub(crate) patterns: Vec<f32>,
+    pub patterns: Vec<f32>,
     /// Where each polygon ends.
-    pub(crate) ends: Vec<u32>,
+    pub ends: Vec<u32>,
 }
 
 impl Polygons {
     /// The memory that they take, in bytes.
-    pub(crate) fn memory(&self) -> usize {
+    pub fn memory(&self) -> usize {
         self.at[0].len() * (2 * size_of::<f32>() + 2)
             + self.patterns.len() * size_of::<f32>()
             + self.ends.len() * size_of::<u32>()
     }
 
     /// Gives back what tracing reserved and did not need.
-    pub(crate) fn shrink(&mut self) {
+    pub fn shrink(&mut self) {
         self.at.iter_mut().for_each(Vec::shrink_to_fit);
         self.ends.shrink_to_fit();
     }
@@ -57,7 +57,7 @@ impl Polygons {
     }
 
     /// Finds out where the vertices lie in what moves them.
-    pub(crate) fn locate(&mut self, frame: &Frame<'_>) {
+    pub fn locate(&mut self, frame: &Frame<'_>) {
         let padded = self.at[0].len().next_multiple_of(LANES);
         let Self { at, knots, patterns, .. } = self;
         for axis in 0..2 {
@@ -87,20 +87,20 @@ impl Polygons {
 const NODES: usize = DEFORM_NODES * DEFORM_NODES;
 
 /// What an outline is traced from.
-pub(crate) struct Frame<'a> {
+pub struct Frame<'a> {
     /// Coefficients in em, bottom row first.
-    pub(crate) field: &'a [f32],
+    pub field: &'a [f32],
     /// The grid along each axis.
-    pub(crate) grid: [GridAxis; 2],
+    pub grid: [GridAxis; 2],
     /// Knots of each axis in em, ascending.
-    pub(crate) knots: [&'a [f32]; 2],
+    pub knots: [&'a [f32]; 2],
     /// The deformation's patterns, one after the other.
-    pub(crate) patterns: &'a [f32],
+    pub patterns: &'a [f32],
 }
 
 /// Traces outlines.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Tracer {
+pub struct Tracer {
     lattice: Lattice,
     simplifier: Simplifier,
     points: Vec<[f32; 2]>,
@@ -109,7 +109,7 @@ pub(crate) struct Tracer {
 
 impl Tracer {
     /// The polygons that are at most each of `tolerances` (em) away from the outline.
-    pub(crate) fn trace(&mut self, frame: &Frame<'_>, levels: &mut [Polygons], tolerances: &[f32]) {
+    pub fn trace(&mut self, frame: &Frame<'_>, levels: &mut [Polygons], tolerances: &[f32]) {
         levels.iter_mut().for_each(Polygons::clear);
         let Self { lattice, simplifier, points, cuts } = self;
         lattice.trace(frame.field, frame.grid.map(|grid| grid.cells));

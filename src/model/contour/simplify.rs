@@ -9,7 +9,7 @@ pub(super) const STEEP: f32 = 4.0;
 
 /// Working memory that simplifying reuses.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Simplifier {
+pub struct Simplifier {
     /// Numbers of the points that stay.
     kept: Vec<usize>,
     /// For each side, twice the area that it cuts off, on its right.
@@ -36,7 +36,7 @@ struct Wedge([f32; 2], [f32; 2]);
 
 impl Simplifier {
     /// The points that are left of a closed loop: none if it is thinner than the tolerance.
-    pub(crate) fn simplify(&mut self, points: &[[f32; 2]], tolerance: f32) -> &[[f32; 2]] {
+    pub fn simplify(&mut self, points: &[[f32; 2]], tolerance: f32) -> &[[f32; 2]] {
         self.points.clear();
         self.keep(points, tolerance);
         if self.kept.len() > 2 {

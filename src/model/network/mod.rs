@@ -209,7 +209,7 @@ impl NetworkWeights {
 }
 
 /// What is wrong with a list of sizes, if anything is.
-pub(crate) fn sizes_problem(sizes: &[NetworkSize]) -> Option<String> {
+pub fn sizes_problem(sizes: &[NetworkSize]) -> Option<String> {
     let count = sizes.len();
     if !(1..=MAX_SIZES).contains(&count) {
         return Some(format!("{count} sizes, 1–{MAX_SIZES} are allowed"));

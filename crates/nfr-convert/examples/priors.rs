@@ -1,0 +1,30 @@
+//! Learns the odds that glyphs are packed with, `spec/priors.txt`, from converted fonts.
+//!
+//! `cargo run --release --example priors FONT.nfr.ttf ... > priors.txt`. The table is part of the format: fonts that were
+//! written with another one cannot be read, so this is for a new version of it. The present table comes from printable
+//! ASCII (`--unicodes U+21-7E`) of the three fonts that README speaks of, half of it for the target `mono`, too, and
+//! letters and digits of Roboto Medium with `--quality 15` and `85`.
+
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+
+use nfr::internals::table::{TAG, Table};
+use nfr_convert::cost::learn_priors;
+use read_fonts::{FontRef, TableProvider};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut fonts = Vec::new();
+    for path in std::env::args().skip(1) {
+        let data = std::fs::read(&path)?;
+        let font = FontRef::new(&data)?;
+        let bytes =
+            font.table_data(TAG).ok_or_else(|| format!("{path} is not converted; use nfr-convert"))?;
+        let table = Table::parse(bytes.as_bytes())?;
+        let scale = table.header().scale(font.head()?.units_per_em());
+        let own = table.gids().filter(|gid| !table.is_composed(*gid));
+        fonts.push((scale, own.map(|gid| table.weights(gid, scale)).collect::<Result<Vec<_>, _>>()?));
+    }
+    print!("{}", learn_priors(&fonts));
+    Ok(())
+}

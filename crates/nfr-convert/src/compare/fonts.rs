@@ -1,0 +1,163 @@
+//! Two font files that belong together: the hinted original, and the neural font made from it.
+
+use std::collections::HashMap;
+
+use read_fonts::FontRef;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::DrawSettings;
+use skrifa::{GlyphId, MetadataProvider};
+
+use super::diff::{Sources, Tallies, compare};
+use super::report::{Report, Subject};
+use super::source::{Hinted, Neural, Unhinted};
+use crate::assemble::outline_hash;
+use crate::error::Error;
+use crate::open::open;
+use crate::outline::Outline;
+use crate::ppem::PpemList;
+use crate::select::glyph_names;
+use crate::teacher::Teacher;
+use nfr::internals::render::Font;
+
+/// An original and the neural font made from it, checked to belong together.
+pub struct FontPair<'a> {
+    original: FontRef<'a>,
+    neural_file: FontRef<'a>,
+    font: Font<'a>,
+    teacher: Teacher<'a>,
+}
+
+impl<'a> FontPair<'a> {
+    /// Opens both files. `index` counts the fonts of the original, should that be a collection.
+    ///
+    /// # Errors
+    ///
+    /// As [`open`], [`Font::parse`] and [`Teacher::new`]; `InvalidParameter` if the neural font's outlines
+    /// are not those that its models were trained from.
+    pub fn open(original: &'a [u8], index: u32, neural: &'a [u8]) -> Result<Self, Error> {
+        let neural_file = open(neural, 0).map_err(|e| about("the neural font", e))?;
+        let font = Font::parse(neural).map_err(|e| about("the neural font", e.into()))?;
+        let original = open(original, index).map_err(|e| about("the original font", e))?;
+        let teacher = Teacher::new(&original, font.target()).map_err(|e| about("the original font", e))?;
+        if !font.outlines_match() {
+            return Err(Error::InvalidParameter(
+                "the neural font's outlines were changed after its models were trained; convert it again"
+                    .into(),
+            ));
+        }
+        if font.outlines_dropped() && outline_hash(&original)? != font.header().outline_hash {
+            return Err(Error::InvalidParameter(
+                "the outlines of the original font are not those that the models were trained from; pass the \
+                 font that the neural one was converted from"
+                    .into(),
+            ));
+        }
+        Ok(Self { original, neural_file, font, teacher })
+    }
+
+    /// The neural font.
+    pub fn font(&self) -> &Font<'a> {
+        &self.font
+    }
+
+    /// The original's file.
+    pub fn original(&self) -> &FontRef<'a> {
+        &self.original
+    }
+
+    /// The hinted original.
+    pub fn teacher(&self) -> &Teacher<'a> {
+        &self.teacher
+    }
+
+    /// Checks that glyphs have the same outlines in both fonts, if both have them.
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter` naming the first that has not.
+    pub fn check_outlines(&self, gids: &[u16]) -> Result<(), Error> {
+        // Without them, the hash of the original's has been checked.
+        if self.font.outlines_dropped() {
+            return Ok(());
+        }
+        let outlines = self.neural_file.outline_glyphs();
+        for &gid in gids {
+            let mut outline = Outline::default();
+            let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+            let drawn = outlines.get(GlyphId::from(gid)).map(|glyph| glyph.draw(settings, &mut outline));
+            outline.scale(1.0 / f32::from(self.teacher.units_per_em()));
+            if !matches!(drawn, Some(Ok(_))) || outline.points != self.teacher.unhinted_em(gid)?.points {
+                return Err(Error::InvalidParameter(format!(
+                    "glyph {gid} is not the same in the two fonts; pass the font that the neural one was converted from"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Bytes of the `Nfrt` table for each glyph in it.
+    pub fn bytes_per_glyph(&self) -> f64 {
+        self.font.table_len() as f64 / self.font.modelled_glyphs().count().max(1) as f64
+    }
+
+    /// Compares glyphs at sizes and sums the result up. `names` are the two files' paths, original first.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` for a glyph without a model, and as [`FontPair::check_outlines`] and [`compare`].
+    pub fn report(
+        &self,
+        names: [&str; 2],
+        gids: &[u16],
+        ppem: &PpemList,
+        jobs: usize,
+    ) -> Result<Report, Error> {
+        let subject = Subject {
+            original: names[0].to_owned(),
+            neural: names[1].to_owned(),
+            target: self.font.target().name().to_owned(),
+            ppem: ppem.to_string(),
+            glyphs: gids.len(),
+            table_bytes: self.font.table_len(),
+            bytes_per_glyph: self.bytes_per_glyph(),
+        };
+        let tallies = self.with_sources(gids, |sources| compare(sources, gids, ppem.sizes(), jobs))?;
+        Ok(self.summed_up(subject, &tallies))
+    }
+
+    /// Gives the three ways to draw these glyphs to `f`.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` for a glyph without a model, and as [`FontPair::check_outlines`] and `f`.
+    pub fn with_sources<T>(
+        &self,
+        gids: &[u16],
+        f: impl FnOnce(Sources<'_>) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let neural = Neural::new(&self.font, gids)?;
+        self.check_outlines(gids)?;
+        f(Sources { truth: &Hinted(&self.teacher), neural: &neural, unhinted: &Unhinted(&self.teacher) })
+    }
+
+    fn summed_up(&self, subject: Subject, tallies: &Tallies) -> Report {
+        let mut characters = HashMap::new();
+        for (code, gid) in self.original.charmap().mappings() {
+            if let Some(character) = char::from_u32(code) {
+                characters.entry(gid.to_u32()).or_insert(character);
+            }
+        }
+        let names = glyph_names(&self.original);
+        Report::new(subject, tallies, |gid| (names.get(&gid).cloned(), characters.get(&gid.into()).copied()))
+    }
+}
+
+/// Says which of the two fonts an error is about.
+fn about(font: &str, error: Error) -> Error {
+    match error {
+        Error::Malformed(what) => Error::Malformed(format!("{font}: {what}")),
+        Error::Unsupported(what) => Error::Unsupported(format!("{font}: {what}")),
+        Error::InvalidParameter(what) => Error::InvalidParameter(format!("{font}: {what}")),
+        other => other,
+    }
+}

@@ -1,0 +1,99 @@
+//! Where bitmaps come from: the hinted teacher, its unhinted outline, or the models.
+
+use std::collections::BTreeMap;
+
+use crate::error::Error;
+use crate::teacher::{Teacher, TeacherAt};
+use nfr::Scratch;
+use nfr::internals::render::{Bitmap, Font, Glyph};
+
+/// Something that draws glyphs, from several threads.
+pub trait Source: Sync {
+    /// Prepares one size, in pixels per em.
+    ///
+    /// # Errors
+    ///
+    /// As the source's own.
+    fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error>;
+}
+
+/// A source at one size.
+pub trait SourceAt {
+    /// Draws a glyph.
+    ///
+    /// # Errors
+    ///
+    /// As the source's own.
+    fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error>;
+}
+
+/// A font's hinted outlines, filled: the truth.
+pub struct Hinted<'t, 'a>(pub &'t Teacher<'a>);
+
+impl Source for Hinted<'_, '_> {
+    fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
+        Ok(Box::new(self.0.at(ppem)?))
+    }
+}
+
+impl SourceAt for TeacherAt<'_, '_> {
+    fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
+        Ok(self.hinted(gid)?.rasterize())
+    }
+}
+
+/// A font's outlines as they are, filled: what rendering without hints gives.
+pub struct Unhinted<'t, 'a>(pub &'t Teacher<'a>);
+
+impl Source for Unhinted<'_, '_> {
+    fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
+        Ok(Box::new(UnhintedAt { teacher: self.0, ppem: ppem.into() }))
+    }
+}
+
+struct UnhintedAt<'t, 'a> {
+    teacher: &'t Teacher<'a>,
+    ppem: f32,
+}
+
+impl SourceAt for UnhintedAt<'_, '_> {
+    fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
+        Ok(self.teacher.unhinted(gid, self.ppem)?.rasterize())
+    }
+}
+
+/// Models, decoded once for all sizes.
+pub struct Neural(BTreeMap<u16, Glyph>);
+
+impl Neural {
+    /// Decodes the models of the glyphs.
+    ///
+    /// # Errors
+    ///
+    /// `MissingGlyph` for a glyph without a model, `Malformed` for a damaged one.
+    pub fn new(font: &Font<'_>, gids: &[u16]) -> Result<Self, Error> {
+        Ok(Self(gids.iter().map(|&gid| Ok((gid, font.glyph(gid)?))).collect::<Result<_, Error>>()?))
+    }
+}
+
+impl Source for Neural {
+    fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
+        Ok(Box::new(NeuralAt { glyphs: &self.0, ppem: ppem.into(), scratch: Scratch::default() }))
+    }
+}
+
+struct NeuralAt<'n> {
+    glyphs: &'n BTreeMap<u16, Glyph>,
+    ppem: f32,
+    scratch: Scratch,
+}
+
+impl SourceAt for NeuralAt<'_> {
+    fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
+        let glyph = self.glyphs.get(&gid).ok_or(Error::MissingGlyph(gid))?;
+        let placement = glyph.placement(self.ppem)?;
+        let mut pixels = vec![0; placement.area()];
+        let placement = glyph.render_into(self.ppem, &mut self.scratch, &mut pixels)?;
+        Ok(Bitmap { placement, pixels })
+    }
+}

@@ -1,0 +1,212 @@
+//! The work file of a conversion: the glyphs that are trained already, so that an interrupted conversion can go
+//! on. Training draws nothing at random that a glyph's number and the seed do not determine, so the font comes
+//! out the same, byte for byte.
+//!
+//! The file is a heading and records, each with its length and a checksum. A record that was not written to its
+//! end is as good as none.
+
+use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use super::pipeline::Options;
+use crate::error::Error;
+use nfr::internals::model::gridfit::{Scale, Weights};
+use nfr::internals::table::{FNV_BASIS, codec, fnv1a};
+
+/// Begins the file; a key of 8 bytes follows.
+const MAGIC: &[u8; 14] = b"nfr partial 2\n";
+/// Bytes of a record's checksum.
+const SUM_BYTES: usize = 8;
+
+/// The work file.
+#[derive(Debug)]
+pub struct Partial {
+    path: PathBuf,
+    key: u64,
+    /// Opened by the first record if the file did not exist.
+    file: Mutex<Option<File>>,
+    /// What the file held: each glyph's box and encoded weights.
+    found: HashMap<u16, Vec<u8>>,
+}
+
+/// Ties a file to what the models depend on: this version, the input and the options, but not the threads or what
+/// becomes of the outlines.
+fn key(input: &[u8], options: &Options) -> u64 {
+    let options = Options { jobs: 1, drop_outlines: false, ..options.clone() };
+    let text = format!("{} {options:?}", env!("CARGO_PKG_VERSION"));
+    fnv1a(fnv1a(FNV_BASIS, text.as_bytes()), input)
+}
+
+impl Partial {
+    /// Prepares the work file of a conversion. It is made when the first glyphs are ready. With `resume`, what
+    /// an earlier conversion left there is used.
+    ///
+    /// # Errors
+    ///
+    /// `Io` if the file is there and `resume` is not asked for, if it belongs to another conversion, or if it
+    /// cannot be read.
+    pub fn open(path: &Path, input: &[u8], options: &Options, resume: bool) -> Result<Self, Error> {
+        let mut partial = Self {
+            path: path.to_owned(),
+            key: key(input, options),
+            file: Mutex::default(),
+            found: HashMap::new(),
+        };
+        let shown = path.display();
+        if !resume {
+            return match path.try_exists() {
+                Ok(false) => Ok(partial),
+                Ok(true) => Err(Error::Io(format!(
+                    "{shown} holds an unfinished conversion; go on with it with --resume, or delete it"
+                ))),
+                Err(e) => Err(partial.failed("read", &e)),
+            };
+        }
+        let mut file = match OpenOptions::new().read(true).write(true).open(path) {
+            Ok(file) => file,
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(partial),
+            Err(e) => return Err(partial.failed("read", &e)),
+        };
+        partial.lock(&file)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(|e| partial.failed("read", &e))?;
+        let whole = match partial.read(&bytes) {
+            Some(whole) => whole,
+            // Cut off inside its heading: nothing is lost.
+            None if partial.heading().starts_with(&bytes) => 0,
+            None => {
+                return Err(Error::Io(format!(
+                    "{shown} belongs to a conversion of another font, with other options or by another version; \
+                     repeat those, or delete it"
+                )));
+            }
+        };
+        if whole == 0 {
+            file.set_len(0)
+                .and_then(|()| file.rewind())
+                .and_then(|()| file.write_all(&partial.heading()))
+                .map_err(|e| partial.failed("write", &e))?;
+        } else {
+            // What was not written to its end makes room.
+            file.set_len(whole as u64)
+                .and_then(|()| file.seek(SeekFrom::End(0)))
+                .map_err(|e| partial.failed("write", &e))?;
+        }
+        partial.file = Mutex::new(Some(file));
+        Ok(partial)
+    }
+
+    /// How many glyphs the file held.
+    pub fn found(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Deletes the file, which the finished font has made useless.
+    ///
+    /// # Errors
+    ///
+    /// `Io` if that fails.
+    pub fn remove(self) -> Result<(), Error> {
+        let failed = |e: io::Error| self.failed("delete", &e);
+        // Some systems do not delete open files.
+        let file = self.file.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if file.is_none() {
+            return Ok(());
+        }
+        drop(file);
+        std::fs::remove_file(&self.path).map_err(failed)
+    }
+
+    /// The weights of some glyphs, if all of them are there.
+    pub(super) fn weights(&self, gids: &[u16], scale: Scale) -> Option<Vec<Weights>> {
+        gids.iter().map(|gid| codec::decode(self.found.get(gid)?, scale).ok()).collect()
+    }
+
+    /// Appends the weights of some glyphs and waits until they are on the disk.
+    ///
+    /// # Errors
+    ///
+    /// `Io` if that fails.
+    pub(super) fn append<'w>(
+        &self,
+        glyphs: impl Iterator<Item = (u16, &'w Weights)>,
+        scale: Scale,
+    ) -> Result<(), Error> {
+        let mut payload = Vec::new();
+        for (gid, weights) in glyphs {
+            let bytes = codec::encode(weights, scale);
+            payload.extend(gid.to_be_bytes());
+            payload.extend((bytes.len() as u32).to_be_bytes());
+            payload.extend(bytes);
+        }
+        let mut record = (payload.len() as u32).to_be_bytes().to_vec();
+        record.extend(&payload);
+        record.extend(fnv1a(FNV_BASIS, &payload).to_be_bytes());
+        let mut slot = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let file = match slot.as_mut() {
+            Some(file) => file,
+            None => slot.insert(self.create()?),
+        };
+        file.write_all(&record).and_then(|()| file.sync_data()).map_err(|e| self.failed("write", &e))
+    }
+
+    fn create(&self) -> Result<File, Error> {
+        let file = OpenOptions::new().write(true).create_new(true).open(&self.path);
+        let mut file = file.map_err(|e| self.failed("write", &e))?;
+        self.lock(&file)?;
+        file.write_all(&self.heading()).map_err(|e| self.failed("write", &e))?;
+        Ok(file)
+    }
+
+    fn heading(&self) -> Vec<u8> {
+        [MAGIC.as_slice(), &self.key.to_be_bytes()].concat()
+    }
+
+    /// Reads the records and says where the last whole one ends. None without the heading.
+    fn read(&mut self, bytes: &[u8]) -> Option<usize> {
+        let mut rest = bytes.strip_prefix(self.heading().as_slice())?;
+        while let Some((payload, after)) = split_record(rest) {
+            let mut glyphs = payload;
+            while let Some((gid, weights, more)) = split_glyph(glyphs) {
+                self.found.insert(gid, weights.to_vec());
+                glyphs = more;
+            }
+            rest = after;
+        }
+        Some(bytes.len() - rest.len())
+    }
+
+    fn lock(&self, file: &File) -> Result<(), Error> {
+        match file.try_lock() {
+            Err(std::fs::TryLockError::WouldBlock) => Err(Error::Io(format!(
+                "{} is being written by another conversion; wait for it, or choose another output",
+                self.path.display()
+            ))),
+            // Not every file system can lock, and then nobody is warned.
+            Ok(()) | Err(std::fs::TryLockError::Error(_)) => Ok(()),
+        }
+    }
+
+    fn failed(&self, to: &str, e: &io::Error) -> Error {
+        Error::Io(format!("cannot {to} {}, which keeps the glyphs that are ready ({e})", self.path.display()))
+    }
+}
+
+/// A record's payload and what follows it, if it is whole.
+fn split_record(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = bytes.split_first_chunk()?;
+    let (payload, rest) = rest.split_at_checked(u32::from_be_bytes(*length) as usize)?;
+    let (sum, rest) = rest.split_first_chunk::<SUM_BYTES>()?;
+    (u64::from_be_bytes(*sum) == fnv1a(FNV_BASIS, payload)).then_some((payload, rest))
+}
+
+/// A glyph of a payload, its weights, and what follows.
+fn split_glyph(bytes: &[u8]) -> Option<(u16, &[u8], &[u8])> {
+    let (gid, rest) = bytes.split_first_chunk()?;
+    let (length, rest) = rest.split_first_chunk()?;
+    let (weights, rest) = rest.split_at_checked(u32::from_be_bytes(*length) as usize)?;
+    Some((u16::from_be_bytes(*gid), weights, rest))
+}

@@ -1,0 +1,160 @@
+//! One network for several weights of a family, or for several typefaces, and what it draws between them.
+
+use burn::tensor::Tensor;
+use burn::tensor::activation::softmax;
+use read_fonts::TableProvider;
+
+use super::Square;
+use super::bench::{Bench, Glyph, Subject};
+use super::between::between;
+use super::classes::CLASSES;
+use super::implicit::{Implicit, Pixels, Statistics};
+use super::learn::{self, Learnt};
+use super::samples::ImplicitSet;
+use super::single::grid_fit_font;
+use super::train::Epoch;
+use super::truth::TruthSize;
+use nfr::internals::model::gridfit::{GridFit, Scale};
+use nfr::internals::render::{Font, Glyph as Drawable};
+use nfr::internals::table::{TAG, Table};
+use nfr_convert::error::Error;
+use nfr_convert::open::open;
+
+/// A font of a family and what the network is told of it.
+pub struct Member<'s> {
+    /// The font.
+    pub subject: &'s Subject,
+    /// Its weight, or its place among typefaces.
+    pub weight: f64,
+}
+
+/// `usWeightClass` of a font in thousands: 0.4 is regular, 0.7 bold.
+///
+/// # Errors
+///
+/// `Malformed` for a font without a table 'OS/2'.
+pub fn weight_of(data: &[u8]) -> Result<f64, Error> {
+    let os2 =
+        open(data, 0)?.os2().map_err(|e| Error::Malformed(format!("table 'OS/2' cannot be read ({e})")))?;
+    Ok(f64::from(os2.us_weight_class()) / 1000.0)
+}
+
+/// A trained network of a family.
+pub struct Family {
+    network: Implicit,
+    set: ImplicitSet,
+    /// The number of sizes.
+    sizes: usize,
+    /// Its epochs.
+    pub history: Vec<Epoch>,
+}
+
+/// Trains one network on a glyph of all members, whose truths share their sizes. `name` is that of the experiment.
+///
+/// # Errors
+///
+/// As the truth's and the checkpoint's; `InvalidParameter` for a member without the character.
+pub fn train(bench: &Bench<'_>, name: &str, members: &[Member<'_>], glyph: char) -> Result<Family, Error> {
+    let settings = &bench.settings;
+    let config = settings.family;
+    let course = settings.implicit_course(config);
+    let mut samples = Vec::new();
+    for member in members {
+        let gid = glyph_of(member.subject, glyph)?.1;
+        samples.extend(member.subject.samples(gid, Some(member.weight))?);
+    }
+    let sizes = samples.len() / members.len().max(1);
+    let code = format!("u{:04x}", u32::from(glyph));
+    let checkpoint = bench.checkpoint(&[name, &code], &format!("{config:?} {course:?}"), &samples)?;
+    let label = format!("{name} {glyph:?}");
+    let tell = |done| (bench.tell)(&label, done, course.rates.len());
+    let Learnt { network, history, .. } =
+        learn::implicit(samples.clone(), sizes, config, &course, &bench.device, checkpoint.as_ref(), &tell)?;
+    Ok(Family { network, set: ImplicitSet::new(samples, sizes, config, &bench.device), sizes, history })
+}
+
+impl Family {
+    /// What the network draws at each size for the member with this number.
+    pub fn member(&self, number: usize) -> Vec<Square> {
+        self.draw(number, |_, pixels| {
+            pixels.weights.clone().map(|weights| self.network.weight_latents(weights))
+        })
+    }
+
+    /// What the network draws at each size from the latent vector a share `t` of the way from one member's to
+    /// another's.
+    pub fn between(&self, from: usize, to: usize, t: f64) -> Vec<Square> {
+        let latents = |number: usize, size: usize| {
+            let (pixels, _) = self.set.batch(&[number * self.sizes + size]);
+            pixels.weights.map(|weights| self.network.weight_latents(weights))
+        };
+        self.draw(from, |size, _| Some(latents(from, size)? * (1.0 - t) + latents(to, size)? * t))
+    }
+
+    fn draw(&self, number: usize, of_weights: impl Fn(usize, &Pixels) -> Option<Tensor<2>>) -> Vec<Square> {
+        let square = |size: usize| {
+            let (pixels, _) = self.set.batch(&[number * self.sizes + size]);
+            let latents = of_weights(size, &pixels);
+            expected(self.network.forward_from(&pixels, latents, Statistics::Batch))
+        };
+        (0..self.sizes).map(square).collect()
+    }
+}
+
+/// The bitmap of expected coverage for scores `[side², classes]`: the mean of the classes' levels, each as likely as
+/// it is. The paper's code draws families so, and single weights from the likeliest class.
+fn expected(scores: Tensor<2>) -> Square {
+    let device = scores.device();
+    let levels: Vec<f32> = (0..CLASSES).map(|class| class as f32 * 255.0 / (CLASSES - 1) as f32).collect();
+    let levels = Tensor::<1>::from_floats(levels.as_slice(), &device).unsqueeze::<2>();
+    let coverage = (softmax(scores, 1) * levels).sum_dim(1).into_data();
+    let values: Vec<f32> = coverage.try_to_vec().unwrap_or_default();
+    Square { side: values.len().isqrt(), pixels: values.into_iter().map(|v| v.round() as u8).collect() }
+}
+
+/// The glyph of a character.
+fn glyph_of(subject: &Subject, glyph: char) -> Result<Glyph, Error> {
+    subject.glyphs(glyph.encode_utf8(&mut [0; 4]))?.pop().ok_or(Error::MissingGlyph(0))
+}
+
+/// Our own models of a glyph of two fonts, and what lies between them.
+pub struct GridFits {
+    files: [Vec<u8>; 2],
+    gids: [u16; 2],
+}
+
+impl GridFits {
+    /// Trains both models.
+    ///
+    /// # Errors
+    ///
+    /// As [`grid_fit_font`]'s; `InvalidParameter` for a font without the character.
+    pub fn train(bench: &Bench<'_>, ends: [&Subject; 2], glyph: char) -> Result<Self, Error> {
+        let glyphs = [glyph_of(ends[0], glyph)?, glyph_of(ends[1], glyph)?];
+        let files =
+            [grid_fit_font(bench, ends[0], &glyphs[..1])?, grid_fit_font(bench, ends[1], &glyphs[1..])?];
+        Ok(Self { files, gids: glyphs.map(|(_, gid)| gid) })
+    }
+
+    /// The bitmaps a share `t` of the way from the first model to the second, in boxes of `subject`'s truth. `snap`
+    /// puts knots that both models have on whole pixels on whole pixels.
+    ///
+    /// # Errors
+    ///
+    /// As the renderer's.
+    pub fn between(&self, subject: &Subject, t: f64, snap: bool) -> Result<Vec<Square>, Error> {
+        let (a, scale) = self.weights(0)?;
+        let (b, _) = self.weights(1)?;
+        let model = GridFit::new(&between(&a, &b, t, scale, snap), scale)?;
+        let glyph = Drawable::of_model(model.into(), scale);
+        let draw = |size: &TruthSize| Ok(size.square(&glyph.render(f32::from(size.ppem))?));
+        subject.truth.sizes.iter().map(draw).collect()
+    }
+
+    fn weights(&self, end: usize) -> Result<(nfr::internals::model::gridfit::Weights, Scale), Error> {
+        let font = open(&self.files[end], 0)?;
+        let units = Font::parse(&self.files[end])?.header().scale(nfr::internals::render::head_units(&font)?);
+        let bytes = font.table_data(TAG).map(|data| data.as_bytes()).unwrap_or_default();
+        Ok((Table::parse(bytes)?.weights(self.gids[end], units)?, units))
+    }
+}

@@ -1,0 +1,164 @@
+//! The paper's network in a font: stored in `Nfrt`, and drawn by the renderer.
+
+use burn::nn::Linear;
+use burn::tensor::Tensor;
+
+use super::Square;
+use super::bench::{Glyph, Subject};
+use super::implicit::{Implicit, ImplicitConfig};
+use super::truth::TruthSize;
+use nfr::internals::model::network::{CONDITIONED, Dense, NetworkSize, NetworkWeights, Norm, Shape};
+use nfr::internals::render::{Font, Rasterizer};
+use nfr::internals::table::{GlyphNetwork, Header, Precision};
+use nfr_convert::error::Error;
+use nfr_convert::networks::with_networks;
+
+/// What readers need of a layout, from the network's configuration.
+///
+/// # Errors
+///
+/// `Unsupported` for a network whose drawing needs more than its weights and the bitmap's size: one for a family, or one
+/// without the memorisation adaptations.
+pub fn shape(config: ImplicitConfig) -> Result<Shape, Error> {
+    let refuse = |what: &str| Err(Error::Unsupported(format!("a network {what} cannot be stored in a font")));
+    if config.weight {
+        return refuse("that is told the weight");
+    }
+    if !config.memorisation {
+        return refuse("without the memorisation adaptations");
+    }
+    let width = |width: usize| {
+        u16::try_from(width).map_err(|_| Error::LimitExceeded(format!("a layer of {width} features")))
+    };
+    let conditioned = |of: usize| if config.size { width(of) } else { Ok(0) };
+    Ok(Shape {
+        width: width(config.width)?,
+        latent: conditioned(config.latent)?,
+        encoder: conditioned(config.encoder)?,
+        frequencies: config.frequencies,
+        residual: config.residual,
+    })
+}
+
+/// A trained network's numbers as the table stores them.
+///
+/// # Errors
+///
+/// As [`shape`], and for a box or a glyph beyond the table's limits.
+pub fn weights(
+    network: &Implicit,
+    config: ImplicitConfig,
+    subject: &Subject,
+    glyph: Glyph,
+) -> Result<NetworkWeights, Error> {
+    let shape = shape(config)?;
+    let (encoder, trunk, from_latent, output) = network.layers();
+    let conditioned = |k: usize| {
+        let at = CONDITIONED.iter().position(|layer| *layer == k)?;
+        from_latent.get(at)
+    };
+    let trunk = trunk.iter().enumerate().map(|(k, layer)| dense(layer, conditioned(k)));
+    let layers = encoder.iter().map(|layer| dense(layer, None)).chain(trunk).chain([dense(output, None)]);
+    let norms = network
+        .norms()
+        .iter()
+        .map(|norm| Norm { gamma: numbers(norm.gamma.val()), beta: numbers(norm.beta.val()) });
+    let stored = NetworkWeights {
+        shape,
+        sizes: (0..subject.truth.sizes.len()).map(|k| size(subject, glyph, k)).collect::<Result<_, _>>()?,
+        dense: layers.collect(),
+        norms: norms.collect(),
+    };
+    stored.check()?;
+    Ok(stored)
+}
+
+fn size(subject: &Subject, (_, gid): Glyph, index: usize) -> Result<NetworkSize, Error> {
+    let (size, bitmap) = (&subject.truth.sizes[index], subject.truth.bitmap(gid, index)?);
+    let place = bitmap.placement;
+    let [left, top] = size.corner(&place);
+    let byte = |value: i64| {
+        u8::try_from(value).map_err(|_| {
+            Error::LimitExceeded(format!("a box of {} pixels is too large to be stored", size.side))
+        })
+    };
+    let place = [left.into(), top.into(), place.width.into(), place.height.into()];
+    let [left, top, width, height] = place.map(byte);
+    let pen = size.pen().map(|pen| pen as i16);
+    Ok(NetworkSize {
+        ppem: size.ppem,
+        side: byte(size.side as i64)?,
+        origin: pen,
+        crop: [left?, top?, width?, height?],
+    })
+}
+
+/// A layer; the rows of its share of the latent vector come last, as those of concatenated inputs.
+fn dense(layer: &Linear, from_latent: Option<&Linear>) -> Dense {
+    let [inputs, outputs] = layer.weight.dims();
+    let mut dense = Dense {
+        inputs,
+        outputs,
+        weights: numbers(layer.weight.val()),
+        bias: layer.bias.as_ref().map_or_else(|| vec![0.0; outputs], |bias| numbers(bias.val())),
+    };
+    if let Some(share) = from_latent {
+        dense.inputs += share.weight.dims()[0];
+        dense.weights.extend(numbers(share.weight.val()));
+    }
+    dense
+}
+
+fn numbers<const D: usize>(tensor: Tensor<D>) -> Vec<f32> {
+    tensor.into_data().try_to_vec().unwrap_or_default()
+}
+
+/// A network's bitmaps as a font shows them: blank outside the box of the hinted glyph, which is what is drawn.
+pub fn cropped(sizes: &[NetworkSize], drawn: &[Square]) -> Vec<Square> {
+    let crop = |(size, square): (&NetworkSize, &Square)| {
+        let [left, top, width, height] = size.crop.map(usize::from);
+        let mut pixels = vec![0; square.pixels.len()];
+        for row in top..top + height {
+            let line = row * square.side + left..row * square.side + left + width;
+            pixels[line.clone()].copy_from_slice(&square.pixels[line]);
+        }
+        Square { side: square.side, pixels }
+    };
+    sizes.iter().zip(drawn).map(crop).collect()
+}
+
+/// A font that draws some glyphs of a subject with networks.
+///
+/// # Errors
+///
+/// As [`with_networks`].
+pub fn font(
+    subject: &Subject,
+    networks: &[(Glyph, NetworkWeights)],
+    precision: Precision,
+    seed: u64,
+) -> Result<Vec<u8>, Error> {
+    let network = |((_, gid), weights): &(Glyph, NetworkWeights)| GlyphNetwork {
+        gid: *gid,
+        weights: weights.clone(),
+        precision,
+    };
+    let mut networks: Vec<GlyphNetwork> = networks.iter().map(network).collect();
+    networks.sort_by_key(|network| network.gid);
+    networks.dedup_by_key(|network| network.gid);
+    with_networks(&subject.data, 0, &networks, &Header { seed, ..Header::default() })
+}
+
+/// What a font with networks draws of a glyph at the sizes of its subject's truth, through the library's call that
+/// draws any model, and the bytes that its network takes. Boxes of one size in pixels per em show the same bitmap.
+///
+/// # Errors
+///
+/// As the renderer's.
+pub fn drawn(file: &[u8], subject: &Subject, (_, gid): Glyph) -> Result<(Vec<Square>, usize), Error> {
+    let font = Font::parse(file)?;
+    let mut rasterizer = Rasterizer::new(&font);
+    let square = |size: &TruthSize| Ok(size.square(&rasterizer.render(gid, f32::from(size.ppem))?));
+    let squares = subject.truth.sizes.iter().map(square).collect::<Result<_, Error>>()?;
+    Ok((squares, font.model_len(gid)?))
+}

@@ -1,0 +1,279 @@
+//! What the experiments share, on one glyph and a few epochs.
+
+use burn::tensor::{Device, Tensor};
+
+use super::Square;
+use super::bench::{Bench, Subject};
+use super::family::{Member, train as train_family};
+use super::implicit::{Implicit, ImplicitConfig, Statistics, focal_loss};
+use super::interpolation::{Aim, interpolate, names};
+use super::masked::{Enlarged, masked_loss};
+use super::samples::ImplicitSet;
+use super::scale::{Scale, Settings};
+use super::single::{Ablation, Choices, Model, implicit, train};
+use super::stored::{font, weights};
+use super::study::store;
+use nfr::internals::model::network::Network;
+use nfr::internals::table::Precision;
+use nfr_convert::Error;
+
+/// The set of the fit rule in these tests.
+const SET: &str = "abcdefghijklmnopqrstuvwxyz";
+
+fn subjects(names: &[&str], sides: &[usize]) -> Vec<Subject> {
+    let read = |name: &&str| {
+        let path = format!("{}/../../fonts/{name}.ttf", env!("CARGO_MANIFEST_DIR"));
+        (path.clone().into(), std::fs::read(path).unwrap())
+    };
+    Subject::family(names.iter().map(read).collect(), SET, sides).unwrap()
+}
+
+fn serif(sides: &[usize]) -> Subject {
+    subjects(&["LiberationSerif-Regular"], sides).remove(0)
+}
+
+fn small(epochs: usize) -> Settings {
+    let scale = Settings::new(Scale::Small);
+    let narrow = |config| ImplicitConfig { width: 48, latent: 8, encoder: 16, ..config };
+    Settings {
+        implicit: narrow(scale.implicit),
+        family: narrow(scale.family),
+        implicit_epochs: epochs,
+        masked_widths: vec![64, 32, 64],
+        masked_epochs: epochs,
+        masked_period: epochs.div_ceil(32),
+        ..scale
+    }
+}
+
+fn bench<'b>(settings: Settings, directory: Option<&std::path::Path>, resume: bool) -> Bench<'b> {
+    Bench {
+        settings,
+        device: Device::flex().autodiff(),
+        jobs: 2,
+        directory: directory.map(Into::into),
+        resume,
+        tell: &|_, _, _| (),
+    }
+}
+
+fn values<const D: usize>(tensor: Tensor<D>) -> Vec<f32> {
+    tensor.into_data().try_to_vec().unwrap()
+}
+
+#[test]
+fn the_focal_loss_is_that_worked_out_by_hand() {
+    let device = Device::flex();
+    // The softmax of (0, 0) is ½: (½)⁶ · ln 2. That of (ln 3, 0) is ¾ and ¼: (¼)⁶ · ln(4/3), (¾)⁶ · ln 4.
+    let loss = |scores: [f32; 2], classes: [f32; 2]| {
+        let [scores, classes] = [scores, classes].map(|row| Tensor::<2>::from_floats([row], &device));
+        values(focal_loss(scores, classes))[0]
+    };
+    let ln3 = 3f32.ln();
+    let cases = [
+        (loss([0.0, 0.0], [1.0, 0.0]), 2f32.ln() / 64.0),
+        (loss([ln3, 0.0], [1.0, 0.0]), (4f32 / 3.0).ln() / 4096.0),
+        (loss([ln3, 0.0], [0.0, 1.0]), 729.0 / 4096.0 * 4f32.ln()),
+        // Clipped at a millionth.
+        (loss([0.0, 100.0], [1.0, 0.0]), 1e6f32.ln()),
+    ];
+    for (loss, expected) in cases {
+        assert!((loss / expected - 1.0).abs() < 1e-4, "{loss} for {expected}");
+    }
+    let scores = Tensor::<2>::from_floats([[0.0, 0.0], [ln3, 0.0]], &device);
+    let both = values(focal_loss(scores, Tensor::<2>::from_floats([[1.0, 0.0], [1.0, 0.0]], &device)))[0];
+    assert!((both - (cases[0].1 + cases[1].1) / 2.0).abs() < 1e-6, "the mean over pixels");
+}
+
+#[test]
+fn the_masked_loss_counts_original_pixels_alone() {
+    let device = Device::flex();
+    let tensor = |rows: [[f32; 4]; 2]| Tensor::<2>::from_floats(rows, &device);
+    let truth = Enlarged {
+        sizes: Tensor::<2>::from_floats([[1.0, 0.0], [0.0, 1.0]], &device),
+        coverage: tensor([[0.0, 1.0, 0.0, 1.0], [0.0; 4]]),
+        mask: tensor([[1.0, 0.0, 0.0, 1.0], [1.0; 4]]),
+    };
+    // Off by ½ at a pixel that counts, by 1 at one that does not, by 1 at another: 1.25 over 6 pixels and 2 bitmaps.
+    let predicted = tensor([[0.5, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]]);
+    assert!((values(masked_loss(predicted, &truth))[0] - 1.25 / 12.0).abs() < 1e-6);
+}
+
+/// The mean squared error that both networks have to reach.
+const MEMORISED: f64 = 0.0005;
+
+#[test]
+fn each_network_memorises_a_glyph_at_two_sizes() {
+    let subject = serif(&[20, 26]);
+    let glyph = subject.glyphs("l").unwrap()[0];
+    let bench = bench(small(800), None, false);
+    for model in [Model::Implicit(Vec::new()), Model::Masked] {
+        let outcome = train(&bench, &subject, glyph, &model).unwrap();
+        assert!(outcome.mse() < MEMORISED, "{}: {}", outcome.model, outcome.mse());
+        assert!(outcome.history.len() == 800 && outcome.rows.len() == 2);
+        let Some(choices) = outcome.choices else {
+            assert_eq!(model, Model::Masked);
+            continue;
+        };
+        assert_eq!(choices.pixels, 20 * 20 + 26 * 26);
+        assert!(choices.wrong > 0 || (outcome.mse() - choices.rounding).abs() < 1e-9, "{choices:?}");
+    }
+}
+
+#[test]
+fn choices_are_counted_against_the_classes_below_the_truth() {
+    let square = |pixels: &[u8]| Square { side: 2, pixels: pixels.to_vec() };
+    // 127 is in the class of 45 %, which is drawn as 115; the others stand for their classes.
+    let truth = [square(&[0, 255, 127, 26]), square(&[0, 0, 0, 255])];
+    let choices = Choices::new(&truth, &[square(&[0, 255, 115, 13]), square(&[0, 0, 13, 255])]).unwrap();
+    assert_eq!((choices.pixels, choices.wrong), (8, 2));
+    let of_level = |levels: f64| (levels / 255.0).powi(2) / 4.0 / 2.0;
+    assert!((choices.rounding - of_level(12.0)).abs() < 1e-12);
+    assert!((choices.mse - 2.0 * of_level(13.0)).abs() < 1e-12);
+}
+
+#[test]
+fn every_ablation_trains_and_leaves_out_what_it_says() {
+    let subject = serif(&[20, 24, 28, 32]);
+    let glyph = subject.glyphs("a").unwrap()[0];
+    let bench = bench(small(2), None, false);
+    let parameters = |config| Implicit::parameters(config);
+    let whole = bench.settings.implicit;
+    for part in Ablation::ALL {
+        let (outcome, network) = implicit(&bench, &subject, glyph, &[part]).unwrap();
+        assert_eq!(outcome.model, format!("implicit without {}", part.name()));
+        assert!(outcome.history.iter().all(|epoch| epoch.loss.is_finite()));
+        use burn::module::Module;
+        let config = part.apply(whole);
+        // The running statistics of batch normalisation are numbers that are not learnt.
+        assert_eq!(network.num_params(), parameters(config) + 3 * 2 * config.width);
+        let fewer = matches!(part, Ablation::Frequencies | Ablation::Size);
+        assert_eq!(parameters(config) < parameters(whole), fewer, "{part:?}");
+    }
+    // 11 layers 784 wide, the first for 130 numbers, 21 classes, three normalisations: 25 MB, 24 MiB.
+    let published = 131 * 784 + 10 * 785 * 784 + 785 * 21 + 3 * 2 * 784;
+    assert_eq!(parameters(ImplicitConfig { size: false, ..Settings::new(Scale::Paper).implicit }), published);
+}
+
+#[test]
+fn a_training_that_was_interrupted_ends_as_one_that_was_not() {
+    let subject = serif(&[20, 26]);
+    let glyph = subject.glyphs("l").unwrap()[0];
+    let directory = tempfile::tempdir().unwrap();
+    let whole = train(&bench(small(6), None, false), &subject, glyph, &Model::Implicit(Vec::new())).unwrap();
+    // Stopped after four epochs by a full disk, say: what it had saved is what a course of six has after four.
+    let stopped = std::cell::Cell::new(0);
+    let settings = small(6);
+    let course = settings.implicit_course(settings.implicit);
+    let set = ImplicitSet::new(
+        subject.samples(glyph.1, None).unwrap(),
+        2,
+        settings.implicit,
+        &Device::flex().autodiff(),
+    );
+    let checkpoint = |resume| {
+        let path = directory.path().join("checkpoint");
+        super::train::checkpoint::Checkpoint::new(path, b"what is learnt", resume).unwrap()
+    };
+    let network = || Implicit::new(settings.implicit, course.seed, &Device::flex().autodiff());
+    let first = super::train::Run::new(network());
+    let result = first.train(
+        &course,
+        set.len(),
+        |numbers| set.batch(numbers),
+        |run| {
+            checkpoint(true).save(run)?;
+            stopped.set(stopped.get() + 1);
+            if stopped.get() == 4 { Err(Error::Io("stopped".into())) } else { Ok(()) }
+        },
+    );
+    assert!(result.is_err());
+    let resumed = checkpoint(true).begin(network()).unwrap();
+    assert_eq!(resumed.history.len(), 4);
+    let resumed = resumed.train(&course, set.len(), |numbers| set.batch(numbers), |_| Ok(())).unwrap();
+    let losses = |history: &[super::train::Epoch]| history.iter().map(|epoch| epoch.loss).collect::<Vec<_>>();
+    assert_eq!(losses(&resumed.history), losses(&whole.history));
+    let scores = |network: &Implicit| values(network.forward(&set.batch(&[0]).0, Statistics::Batch));
+    let (_, straight) = implicit(&bench(small(6), None, false), &subject, glyph, &[]).unwrap();
+    assert_eq!(scores(&resumed.network), scores(&straight));
+}
+
+#[test]
+fn a_checkpoint_of_something_else_or_a_damaged_one_is_refused_and_kept() {
+    let subject = serif(&[20, 26]);
+    let glyph = subject.glyphs("l").unwrap()[0];
+    let directory = tempfile::tempdir().unwrap();
+    let run = |settings: Settings, resume| {
+        let bench = bench(settings, Some(directory.path()), resume);
+        train(&bench, &subject, glyph, &Model::Masked).map(|outcome| outcome.rows)
+    };
+    let rows = run(small(2), false).unwrap();
+    let path = directory.path().join("masked/LiberationSerif-Regular/u006c/checkpoint");
+    let bytes = std::fs::read(&path).unwrap();
+    let refused = |settings, resume, what: &str| {
+        let error = run(settings, resume).unwrap_err().to_string();
+        assert!(error.contains(what), "{error}");
+    };
+    refused(small(2), false, "--resume");
+    refused(Settings { seed: 2, ..small(2) }, true, "other settings");
+    assert_eq!(run(small(2), true).unwrap(), rows, "a finished training is used as it is");
+    for at in [0, 12, 40, bytes.len() / 2, bytes.len() - 1] {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 1;
+        std::fs::write(&path, &damaged).unwrap();
+        refused(small(2), true, "damaged");
+        std::fs::write(&path, &bytes[..at]).unwrap();
+        refused(small(2), true, "damaged");
+    }
+    assert_eq!(std::fs::read(&path).unwrap().len(), bytes.len() - 1, "it is still there");
+}
+
+#[test]
+fn a_network_in_a_font_draws_what_it_drew_in_training() {
+    let subject = serif(&[20, 26, 32]);
+    let glyph = subject.glyphs("l").unwrap()[0];
+    let bench = bench(small(60), None, false);
+    let (outcome, network) = implicit(&bench, &subject, glyph, &[]).unwrap();
+    let stored = weights(&network, bench.settings.implicit, &subject, glyph).unwrap();
+    let evaluated = Network::new(stored.clone()).unwrap();
+    for (k, drawn) in outcome.drawn.iter().enumerate() {
+        let pixels = evaluated.levels(k).unwrap();
+        let other = pixels.iter().zip(&drawn.pixels).filter(|(a, b)| a != b).count();
+        // Sums in another order round differently, which can tip a pixel between two classes.
+        assert!(other <= pixels.len() / 200, "{other} of {} pixels at size {k}", pixels.len());
+    }
+    let [sixteen, eight] = store(&bench, &subject, glyph, &network, &outcome).unwrap();
+    assert!(sixteen.bytes > eight.bytes && eight.bytes > Implicit::parameters(bench.settings.implicit));
+    for (stored, bound) in [(&sixteen, 0.001), (&eight, 0.01)] {
+        let (mse, before) = (stored.outcome.mse(), stored.before);
+        assert!((mse - before).abs() < bound, "{mse} for {before} at {} bits", stored.bits);
+    }
+    let file = font(&subject, &[(glyph, stored)], Precision::Eight, 1).unwrap();
+    assert!(nfr::Font::parse(&file).unwrap().is_network(glyph.1));
+    let told = ImplicitConfig { weight: true, ..bench.settings.implicit };
+    assert!(matches!(super::stored::shape(told), Err(Error::Unsupported(_))));
+}
+
+#[test]
+fn between_two_weights_our_model_is_nearer_to_the_real_one_than_either_end() {
+    let family = subjects(&["Roboto_500Medium", "Roboto_700Bold", "Roboto_600SemiBold"], &[32, 62]);
+    let [medium, bold, between] = &family[..] else { panic!("three fonts") };
+    assert!(family.windows(2).all(|pair| pair[0].truth.sizes == pair[1].truth.sizes), "common sizes");
+    let members = [Member { subject: medium, weight: 0.5 }, Member { subject: bold, weight: 0.7 }];
+    let aim = Aim { name: &between.name, share: 0.5, real: Some(between) };
+    let found = interpolate(&bench(small(2), None, false), "weights", &members, aim, 'a').unwrap();
+    let mse = |name: &str| found.between.iter().find(|drawing| drawing.name == name).unwrap().mse().unwrap();
+    let ends = mse(names::FIRST).min(mse(names::LAST));
+    assert!(mse(names::GRID_FIT) < ends, "{} {ends}", mse(names::GRID_FIT));
+    assert!(mse(names::IMPLICIT).is_finite() && found.ends.len() == 2);
+}
+
+#[test]
+fn at_its_ends_a_family_is_its_members() {
+    let family = subjects(&["LiberationSerif-Regular", "LiberationSans-Regular"], &[20, 24]);
+    let members = [Member { subject: &family[0], weight: -1.0 }, Member { subject: &family[1], weight: 1.0 }];
+    let trained = train_family(&bench(small(3), None, false), "styles", &members, 'l').unwrap();
+    assert_eq!(trained.between(0, 1, 0.0), trained.member(0));
+    assert_eq!(trained.between(0, 1, 1.0), trained.member(1));
+    assert_ne!(trained.member(0), trained.member(1));
+}

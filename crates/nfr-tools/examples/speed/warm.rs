@@ -1,0 +1,231 @@
+//! Drawing at a size that has been drawn before. Opening the font and setting the size are not timed.
+//!
+//! - `nfr`: `Rasterizer::render_into` a buffer that is used again, the models decoded. The box is part of that call.
+//! - `skrifa_zeno`: skrifa with the hinting that the models learnt and an instance for the size, zeno with its
+//!   `Scratch`; path and pixels go to memory that is used again.
+//! - `swash`: one `Scaler` for all glyphs, hinted, and `Render::render_into` an image that is used again. Its hinting
+//!   is for subpixels and cannot be chosen, and its fonts are read by an older skrifa.
+//! - `freetype`: `FT_Load_Glyph` with the font's own programs, and `FT_Render_Glyph`. The bitmap stays in its slot.
+//! - `fontdue`: `Font::rasterize_indexed`, which has no hinting and allocates each bitmap. It has turned all outlines
+//!   into lines when it opened the font.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::rc::Rc;
+use std::time::Instant;
+
+use freetype::face::LoadFlag;
+use freetype::{Face, Library, RenderMode};
+use nfr::{Rasterizer, Target};
+use nfr_convert::compare::fonts::FontPair;
+use skrifa::MetadataProvider;
+use skrifa::outline::{DrawSettings, HintingInstance, OutlineGlyphCollection};
+use swash::scale::{Render, ScaleContext, Source, image::Image};
+
+use super::round::Contestant;
+use super::skrifa_zeno::{SkrifaZeno, hinting};
+
+/// A renderer that keeps what it can from one glyph to the next.
+trait Renderer {
+    /// Gets ready for a size.
+    fn set_size(&mut self, ppem: u16, gids: &[u16]) -> Result<(), Box<dyn Error>>;
+
+    /// Draws each glyph and shows its pixels.
+    fn draw(&mut self, gids: &[u16], show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>>;
+}
+
+/// Those that draw at a size that they have drawn before.
+pub(crate) fn contestants<'a>(
+    pair: &'a FontPair<'a>,
+    original: &'a [u8],
+) -> Result<Vec<Contestant<'a>>, Box<dyn Error>> {
+    let target = pair.font().target();
+    Ok(vec![
+        contestant("nfr", Nfr { rasterizer: Rasterizer::new(pair.font()), ppem: 0.0, pixels: Vec::new() }),
+        contestant("skrifa_zeno", Skrifa::new(pair.original().outline_glyphs(), target)),
+        contestant("swash", Swash::new(original)?),
+        contestant("freetype", FreeType::new(original, target)?),
+        contestant("fontdue", Fontdue::new(original)?),
+    ])
+}
+
+fn contestant<'a>(name: &'static str, mut renderer: impl Renderer + 'a) -> Contestant<'a> {
+    let mut last = None;
+    Contestant::new(name, move |ppem, gids| {
+        if last != Some(ppem) {
+            renderer.set_size(ppem, gids)?;
+            check_ink(&mut renderer, gids)?;
+            last = Some(ppem);
+        }
+        let start = Instant::now();
+        renderer.draw(black_box(gids), |pixels| {
+            black_box(pixels);
+        })?;
+        Ok(start.elapsed())
+    })
+}
+
+/// Whoever draws nothing has no place here.
+fn check_ink(renderer: &mut impl Renderer, gids: &[u16]) -> Result<(), Box<dyn Error>> {
+    let mut inked = 0;
+    renderer.draw(gids, |pixels| inked += usize::from(pixels.iter().any(|coverage| *coverage > 0)))?;
+    if 2 * inked < gids.len() {
+        return Err(format!("only {inked} of {} glyphs have ink", gids.len()).into());
+    }
+    Ok(())
+}
+
+struct Nfr<'a> {
+    rasterizer: Rasterizer<'a>,
+    ppem: f32,
+    pixels: Vec<u8>,
+}
+
+impl Renderer for Nfr<'_> {
+    fn set_size(&mut self, ppem: u16, gids: &[u16]) -> Result<(), Box<dyn Error>> {
+        self.ppem = ppem.into();
+        for &gid in gids {
+            let area = self.rasterizer.placement(gid, self.ppem)?.area();
+            self.pixels.resize(self.pixels.len().max(area), 0);
+        }
+        Ok(())
+    }
+
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+        for &gid in gids {
+            let place = self.rasterizer.render_into(gid, self.ppem, &mut self.pixels)?;
+            show(&self.pixels[..place.area()]);
+        }
+        Ok(())
+    }
+}
+
+struct Skrifa<'a> {
+    outlines: OutlineGlyphCollection<'a>,
+    target: Target,
+    hinting: Option<HintingInstance>,
+    renderer: SkrifaZeno<'a>,
+}
+
+impl<'a> Skrifa<'a> {
+    fn new(outlines: OutlineGlyphCollection<'a>, target: Target) -> Self {
+        Self { renderer: SkrifaZeno::new(outlines.clone()), outlines, target, hinting: None }
+    }
+}
+
+impl Renderer for Skrifa<'_> {
+    fn set_size(&mut self, ppem: u16, _: &[u16]) -> Result<(), Box<dyn Error>> {
+        self.hinting = Some(hinting(&self.outlines, ppem, self.target)?);
+        Ok(())
+    }
+
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+        let hinting = self.hinting.as_ref().ok_or("no size is set")?;
+        for &gid in gids {
+            show(self.renderer.draw(gid, DrawSettings::hinted(hinting, false), 0.0)?.1);
+        }
+        Ok(())
+    }
+}
+
+struct Swash<'a> {
+    context: ScaleContext,
+    font: swash::FontRef<'a>,
+    ppem: f32,
+    image: Image,
+}
+
+impl<'a> Swash<'a> {
+    fn new(data: &'a [u8]) -> Result<Self, Box<dyn Error>> {
+        let font = swash::FontRef::from_index(data, 0).ok_or("swash cannot read the original font")?;
+        Ok(Self { context: ScaleContext::new(), font, ppem: 0.0, image: Image::new() })
+    }
+}
+
+impl Renderer for Swash<'_> {
+    fn set_size(&mut self, ppem: u16, _: &[u16]) -> Result<(), Box<dyn Error>> {
+        self.ppem = ppem.into();
+        Ok(())
+    }
+
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+        let mut scaler = self.context.builder(self.font).size(self.ppem).hint(true).build();
+        let render = Render::new(&[Source::Outline]);
+        for &gid in gids {
+            // It draws on what is there.
+            self.image.clear();
+            if !render.render_into(&mut scaler, gid, &mut self.image) {
+                return Err(format!("glyph {gid} cannot be drawn").into());
+            }
+            show(&self.image.data);
+        }
+        Ok(())
+    }
+}
+
+/// FreeType with a font.
+pub(crate) struct FreeType {
+    face: Face<Rc<Vec<u8>>>,
+    flags: LoadFlag,
+}
+
+impl FreeType {
+    /// Opens a font, to be hinted as the models learnt it.
+    pub(crate) fn new(data: &[u8], target: Target) -> Result<Self, Box<dyn Error>> {
+        let target = match target {
+            Target::Smooth => LoadFlag::TARGET_NORMAL,
+            Target::Mono => LoadFlag::TARGET_MONO,
+            Target::Lcd => LoadFlag::TARGET_LCD,
+        };
+        let face = Library::init()?.new_memory_face(Rc::new(data.to_vec()), 0)?;
+        Ok(Self { face, flags: LoadFlag::NO_AUTOHINT | target })
+    }
+
+    pub(crate) fn set_size(&self, ppem: u16) -> Result<(), Box<dyn Error>> {
+        Ok(self.face.set_pixel_sizes(0, ppem.into())?)
+    }
+
+    pub(crate) fn draw(&self, gid: u16, show: &mut impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+        self.face.load_glyph(gid.into(), self.flags)?;
+        // Grey coverage, whatever the hinting is for.
+        self.face.glyph().render_glyph(RenderMode::Normal)?;
+        show(self.face.glyph().bitmap().buffer());
+        Ok(())
+    }
+}
+
+impl Renderer for FreeType {
+    fn set_size(&mut self, ppem: u16, _: &[u16]) -> Result<(), Box<dyn Error>> {
+        FreeType::set_size(self, ppem)
+    }
+
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+        gids.iter().try_for_each(|gid| FreeType::draw(self, *gid, &mut show))
+    }
+}
+
+struct Fontdue {
+    font: fontdue::Font,
+    ppem: f32,
+}
+
+impl Fontdue {
+    fn new(data: &[u8]) -> Result<Self, Box<dyn Error>> {
+        let settings = fontdue::FontSettings { load_substitutions: false, ..Default::default() };
+        Ok(Self { font: fontdue::Font::from_bytes(data, settings)?, ppem: 0.0 })
+    }
+}
+
+impl Renderer for Fontdue {
+    fn set_size(&mut self, ppem: u16, _: &[u16]) -> Result<(), Box<dyn Error>> {
+        self.ppem = ppem.into();
+        Ok(())
+    }
+
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+        for &gid in gids {
+            show(&self.font.rasterize_indexed(gid, self.ppem).1);
+        }
+        Ok(())
+    }
+}

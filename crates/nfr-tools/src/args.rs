@@ -1,0 +1,69 @@
+//! Arguments that several tools share.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::files::read;
+use nfr_convert::select::{CodePoints, GlyphIds, GlyphNames, Selection};
+
+const HEADING: &str = "Glyphs (all that is given adds up)";
+
+/// Which glyphs; all that is given adds up.
+#[derive(Debug, Clone, Args)]
+pub struct SelectionArgs {
+    /// The characters of a text
+    #[arg(long, help_heading = HEADING, value_name = "TEXT", allow_hyphen_values = true)]
+    text: Option<String>,
+    /// The characters of a text file in UTF-8
+    #[arg(long, help_heading = HEADING, value_name = "FILE")]
+    text_file: Option<PathBuf>,
+    /// Code points, as in U+20-7E,U+E9
+    #[arg(long, help_heading = HEADING, value_name = "LIST")]
+    unicodes: Option<CodePoints>,
+    /// Glyph numbers, as in 3,5-9
+    #[arg(long, help_heading = HEADING, value_name = "LIST")]
+    gids: Option<GlyphIds>,
+    /// Glyph names, as in a,eacute
+    #[arg(long, help_heading = HEADING, value_name = "LIST")]
+    glyphs: Option<GlyphNames>,
+}
+
+impl SelectionArgs {
+    /// Reads the text file and puts all together.
+    ///
+    /// # Errors
+    ///
+    /// A text file that cannot be read.
+    pub fn selection(&self) -> Result<Selection, Failure> {
+        let from_file = self.text_file.as_deref().map(read_text).transpose()?;
+        let text = match (&self.text, from_file) {
+            (Some(text), Some(more)) => Some(format!("{text}{more}")),
+            (text, more) => text.clone().or(more),
+        };
+        Ok(Selection {
+            text,
+            unicodes: self.unicodes.clone().unwrap_or_default(),
+            gids: self.gids.clone().unwrap_or_default(),
+            names: self.glyphs.clone().unwrap_or_default(),
+        })
+    }
+}
+
+fn read_text(path: &Path) -> Result<String, Failure> {
+    String::from_utf8(read(path)?).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        Failure::failed(format!("{}: not UTF-8 at byte {at}; save the text as UTF-8", path.display()))
+    })
+}
+
+/// As many threads as the machine has cores.
+pub(super) fn all_cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// A number of threads, at least one.
+pub(super) fn jobs(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&jobs| jobs > 0).ok_or_else(|| "write a number of threads, 1 or more".into())
+}

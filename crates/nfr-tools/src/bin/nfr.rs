@@ -1,0 +1,33 @@
+//! Draws, compares and describes neural fonts.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use nfr_tools as cli;
+
+/// Draws, compares and describes neural fonts
+#[derive(Debug, Parser)]
+#[command(name = "nfr", version)]
+struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Render(cli::render::Args),
+    Diff(cli::diff::Args),
+    Info(cli::info::Args),
+    #[cfg(feature = "lab")]
+    Lab(cli::lab::Args),
+}
+
+fn main() -> ExitCode {
+    cli::finish(match Args::parse().command {
+        Command::Render(args) => cli::render::run(&args),
+        Command::Diff(args) => cli::diff::run(&args),
+        Command::Info(args) => cli::info::run(&args),
+        #[cfg(feature = "lab")]
+        Command::Lab(args) => cli::lab::run(&args),
+    })
+}

@@ -1,0 +1,311 @@
+//! `nfr-convert`: from a hinted font to a neural one.
+
+use std::io::{self, Write};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use serde::Serialize;
+
+use super::args::{SelectionArgs, all_cores, jobs};
+use super::failure::Failure;
+use super::files::{Output, read, same_file};
+use super::progress::{Reporter, Verbosity};
+use nfr::internals::model::Target;
+use nfr_convert::compare::fonts::FontPair;
+use nfr_convert::compare::report::{Report, glyphs};
+use nfr_convert::open::{has_models, open};
+use nfr_convert::partial::Partial;
+use nfr_convert::ppem::PpemList;
+use nfr_convert::select::{glyph_count, glyph_names};
+use nfr_convert::teacher::Teacher;
+use nfr_convert::train::Backend;
+use nfr_convert::{Conversion, GlyphReport, Options, Quality, resume};
+
+/// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
+/// programs
+#[derive(Debug, Parser)]
+#[command(name = "nfr-convert", version)]
+pub struct Args {
+    /// A hinted TrueType font
+    input: PathBuf,
+    /// The neural font to write
+    output: PathBuf,
+    #[command(flatten)]
+    selection: SelectionArgs,
+    /// The sizes to learn, in pixels per em: a range, which may have a step, as in 8-64:2
+    ///
+    /// With --train-ppem, the sizes that the figures are about.
+    #[arg(long, value_name = "SIZES", default_value = "8-64")]
+    ppem: PpemList,
+    /// Learn these sizes instead of those of --ppem; what hinting does at the sizes between is predicted from
+    /// them
+    #[arg(long, value_name = "SIZES")]
+    train_ppem: Option<PpemList>,
+    /// What to hint for: smooth, mono or lcd
+    #[arg(long, value_name = "TARGET", default_value_t)]
+    target: Target,
+    /// How much error is worth how many bytes: 0 for the smallest file, 100 for the least error
+    #[arg(long, value_name = "0-100", default_value = "50", value_parser = quality)]
+    quality: Quality,
+    /// The seed of whatever is drawn at random; the same seed gives the same font
+    #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
+    seed: u64,
+    /// Threads; the result does not depend on it
+    #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
+    jobs: usize,
+    /// burn's backend: flex, or ndarray where that is built in
+    #[arg(long, value_name = "NAME", default_value = "flex", value_parser = backend)]
+    backend: Backend,
+    /// The font's index, if the input is a collection
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    index: u32,
+    /// Leave out the outlines of the glyphs that get models, for programs that draw only with those
+    ///
+    /// Metrics, characters and layout stay. Everything else draws these glyphs as blanks.
+    #[arg(long)]
+    drop_outlines: bool,
+    /// Go on where an interrupted conversion to the same output stopped
+    ///
+    /// While it runs, a conversion keeps the glyphs that are ready in OUTPUT.partial. If it is interrupted, the
+    /// same command with --resume trains only the others, and the font comes out the same. The input, the options
+    /// and the version have to be the same, but --jobs and --drop-outlines may change. The file is deleted in the
+    /// end.
+    #[arg(long)]
+    resume: bool,
+    /// Write a report as JSON
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Print nothing but errors
+    #[arg(long, short, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print a line for each glyph
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+/// The `--report`.
+#[derive(Debug, Serialize)]
+struct Written<'r> {
+    input: String,
+    output: String,
+    target: &'static str,
+    ppem: String,
+    seed: u64,
+    glyphs: Vec<WrittenGlyph>,
+    table_bytes: usize,
+    bytes_per_glyph: f64,
+    /// The hint programs that the table stands in place of.
+    hint_bytes: WrittenHints,
+    input_bytes: usize,
+    output_bytes: usize,
+    mae: f64,
+    bad16: f64,
+    seconds: f64,
+    /// The comparison of the written font with its original.
+    comparison: &'r Report,
+}
+
+#[derive(Debug, Serialize)]
+struct WrittenHints {
+    glyph_programs: usize,
+    fpgm: usize,
+    prep: usize,
+    cvt: usize,
+    total: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct WrittenGlyph {
+    gid: u16,
+    bytes: usize,
+    composed: bool,
+    mae: f64,
+    bad16: f64,
+}
+
+fn backend(name: &str) -> Result<Backend, String> {
+    match name {
+        "flex" => Ok(Backend::Flex),
+        #[cfg(feature = "ndarray")]
+        "ndarray" => Ok(Backend::Ndarray),
+        #[cfg(not(feature = "ndarray"))]
+        "ndarray" => Err("this program is built without it; build it with --features ndarray".into()),
+        _ => Err("use flex or ndarray".into()),
+    }
+}
+
+fn quality(text: &str) -> Result<Quality, String> {
+    text.parse().ok().and_then(Quality::new).ok_or_else(|| "write a number from 0 to 100".into())
+}
+
+/// Runs `nfr-convert`.
+///
+/// # Errors
+///
+/// Wrong usage, an input that cannot teach, an output that cannot be written. An existing output is then as
+/// it was.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let sizes = check_usage(args)?;
+    let input = read(&args.input)?;
+    let (options, reporter) = prepare(args, &input, sizes).map_err(|e| e.at(args.input.display()))?;
+    let output = Output::new(&args.output)?;
+    let report = args.report.as_deref().map(Output::new).transpose()?;
+
+    let partial = output.partial();
+    let partial = partial.map(|path| Partial::open(&path, &input, &options, args.resume)).transpose()?;
+    if let Some(found) = partial.as_ref().map(Partial::found).filter(|found| *found > 0) {
+        reporter.note(&format!("going on after {}", glyphs(found)));
+    }
+
+    let converted = resume(&input, &options, &reporter, partial.as_ref());
+    let elapsed = reporter.elapsed();
+    drop(reporter);
+    let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
+    // What is written is what was checked: the figures are those of the finished file.
+    let names = [&args.input, &args.output].map(|path| path.display().to_string());
+    let comparison = FontPair::open(&input, args.index, &conversion.font)?.report(
+        [&names[0], &names[1]],
+        &options.gids,
+        &args.ppem,
+        args.jobs,
+    )?;
+    output.write(&conversion.font)?;
+    partial.map(Partial::remove).transpose()?;
+
+    let written = summary(args, &input, &conversion, &comparison, elapsed.as_secs_f64());
+    if let Some(file) = report {
+        let json = serde_json::to_string_pretty(&written).map_err(|e| Failure::failed(e.to_string()))?;
+        file.write((json + "\n").as_bytes())?;
+    }
+    if args.quiet { Ok(()) } else { print(&written) }
+}
+
+/// The sizes to learn, and the step between them.
+fn check_usage(args: &Args) -> Result<(RangeInclusive<u16>, u16), Failure> {
+    let clash = |a: &Path, b: &Path, what: &str| {
+        if same_file(a, b) { Err(Failure::usage(format!("{what}; write to another file"))) } else { Ok(()) }
+    };
+    clash(&args.input, &args.output, "the output is the input")?;
+    if let Some(report) = &args.report {
+        clash(&args.input, report, "the report is the input")?;
+        clash(&args.output, report, "the report is the output")?;
+    }
+    let (option, list) = match &args.train_ppem {
+        Some(list) => ("--train-ppem", list),
+        None => ("--ppem", &args.ppem),
+    };
+    list.evenly_spaced().ok_or_else(|| {
+        Failure::usage(format!(
+            "{option} {list} is uneven; training takes one range with one step, as in 8-64 or 8-64:2"
+        ))
+    })
+}
+
+/// Checks all that can be known before the training.
+fn prepare(
+    args: &Args,
+    input: &[u8],
+    (ppem, ppem_step): (RangeInclusive<u16>, u16),
+) -> Result<(Options, Reporter), Failure> {
+    let font = open(input, args.index)?;
+    if has_models(&font) {
+        return Err(Failure::failed(
+            "the font carries an 'Nfrt' table already; convert the hinted font that it was made from",
+        ));
+    }
+    let teacher = Teacher::new(&font, args.target)?;
+    for size in args.ppem.sizes().iter().copied().chain(ppem.clone().step_by(ppem_step.into())) {
+        teacher.at(size)?;
+    }
+    let all = 0..=u16::try_from(glyph_count(&font)?.saturating_sub(1)).unwrap_or(u16::MAX);
+    let gids = args.selection.selection()?.resolve(&font, all)?;
+    let verbosity = match (args.quiet, args.verbose) {
+        (true, _) => Verbosity::Quiet,
+        (_, true) => Verbosity::Verbose,
+        _ => Verbosity::Normal,
+    };
+    let reporter = Reporter::new(verbosity, gids.len(), glyph_names(&font));
+    let options = Options {
+        index: args.index,
+        gids,
+        ppem,
+        ppem_step,
+        target: args.target,
+        seed: args.seed,
+        jobs: args.jobs,
+        backend: args.backend,
+        drop_outlines: args.drop_outlines,
+        ..Options::default().with_quality(args.quality)
+    };
+    Ok((options, reporter))
+}
+
+fn summary<'r>(
+    args: &Args,
+    input: &[u8],
+    conversion: &Conversion,
+    comparison: &'r Report,
+    seconds: f64,
+) -> Written<'r> {
+    let glyph = |g: &GlyphReport| WrittenGlyph {
+        gid: g.gid,
+        bytes: g.bytes,
+        composed: g.composed,
+        mae: g.mae,
+        bad16: g.bad16,
+    };
+    let figures = &comparison.totals.neural.figures;
+    let hints = &conversion.hint_bytes;
+    Written {
+        input: args.input.display().to_string(),
+        output: args.output.display().to_string(),
+        target: args.target.name(),
+        ppem: args.ppem.to_string(),
+        seed: args.seed,
+        glyphs: conversion.glyphs.iter().map(glyph).collect(),
+        table_bytes: conversion.table_bytes,
+        bytes_per_glyph: comparison.subject.bytes_per_glyph,
+        hint_bytes: WrittenHints {
+            glyph_programs: hints.glyph_programs,
+            fpgm: hints.fpgm,
+            prep: hints.prep,
+            cvt: hints.cvt,
+            total: hints.total(),
+        },
+        input_bytes: input.len(),
+        output_bytes: conversion.font.len(),
+        mae: figures.mae,
+        bad16: figures.bad16,
+        seconds,
+        comparison,
+    }
+}
+
+fn print(written: &Written<'_>) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    let unhinted = &written.comparison.totals.unhinted.figures;
+    let composed = match written.glyphs.iter().filter(|glyph| glyph.composed).count() {
+        0 => String::new(),
+        count => format!(", {count} of them put together from others"),
+    };
+    let count = glyphs(written.glyphs.len());
+    writeln!(out, "{}: {count} at {} ppem{composed}", written.output, written.ppem)?;
+    writeln!(out, "table   {} bytes, {:.1} per glyph", written.table_bytes, written.bytes_per_glyph)?;
+    let hints = &written.hint_bytes;
+    writeln!(
+        out,
+        "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
+        hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
+    )?;
+    let percent = 100.0 * written.output_bytes as f64 / written.input_bytes.max(1) as f64;
+    writeln!(
+        out,
+        "file    {} bytes, {percent:.1} % of the original's {}",
+        written.output_bytes, written.input_bytes
+    )?;
+    writeln!(out, "mae     {:.5} (unhinted {:.5})", written.mae, unhinted.mae)?;
+    writeln!(out, "bad16   {:.2} % (unhinted {:.2} %)", 100.0 * written.bad16, 100.0 * unhinted.bad16)?;
+    writeln!(out, "time    {:.1} s", written.seconds)?;
+    Ok(())
+}

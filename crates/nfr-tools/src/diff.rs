@@ -1,0 +1,147 @@
+//! `nfr diff`: a neural font against the hinted one that it was made from.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::args::{SelectionArgs, all_cores, jobs};
+use super::failure::Failure;
+use super::files::{Output, open_neural, read};
+use nfr_convert::compare::diff::Sources;
+use nfr_convert::compare::fonts::FontPair;
+use nfr_convert::compare::html::{self, Sample};
+use nfr_convert::compare::picture::{Row, sheet, text_line};
+use nfr_convert::compare::report::Report;
+use nfr_convert::compare::sample::{PANGRAM, WORD, sample};
+use nfr_convert::compare::threshold::FailOn;
+use nfr_convert::error::Error;
+use nfr_convert::ppem::PpemList;
+
+/// The sizes of the web page's text, in pixels per em: those at which hinting shows.
+const PAGE_SIZES: std::ops::RangeInclusive<u16> = 9..=24;
+/// The sizes of the picture. A shorter list than this is shown whole.
+const PICTURE_SIZES: [u16; 4] = [9, 12, 16, 24];
+/// The most sizes shown where none of the usual ones was compared.
+const FALLBACK_SIZES: usize = 6;
+
+/// Compares a neural font with the hinted font that it was made from
+///
+/// The error is that of the models' bitmaps against the hinted ones, over the union of their boxes; the same
+/// figures for the unhinted outlines stand beside it.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The hinted font
+    original: PathBuf,
+    /// The neural font made from it
+    neural: PathBuf,
+    #[command(flatten)]
+    selection: SelectionArgs,
+    /// Sizes in pixels per em, as in 12, 8-64, 8-64:2 or 9,12,16-20
+    #[arg(long, value_name = "SIZES", default_value = "8-64")]
+    ppem: PpemList,
+    /// The font's index, if the original is a collection
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    index: u32,
+    /// Threads; the result does not depend on it
+    #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
+    jobs: usize,
+    /// Write the whole report as JSON; "-" prints it instead of the table
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write a web page, DIR/index.html
+    #[arg(long, value_name = "DIR")]
+    html: Option<PathBuf>,
+    /// Draw text as neural, hinted and unhinted bitmaps side by side
+    #[arg(long, value_name = "FILE")]
+    png: Option<PathBuf>,
+    /// Enlarge that picture's pixels so many times
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=64))]
+    zoom: u32,
+    /// Exit with 1 if any condition holds, as in 'mae>0.006 || bad16>0.02'
+    ///
+    /// Conditions are joined by "," or "||". Each is a metric (mae, rmse, max, bad16, exact, bytes_per_glyph),
+    /// a comparison (>, >=, <, <=) and a decimal number, and is checked on the figures of all glyphs and sizes.
+    #[arg(long, value_name = "EXPR")]
+    fail_on: Option<FailOn>,
+}
+
+/// Runs `nfr diff`.
+///
+/// # Errors
+///
+/// Fonts that do not belong together, a glyph without a model, a place that cannot be written, or a
+/// condition of `--fail-on` that holds.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let (original, neural) = (read(&args.original)?, read(&args.neural)?);
+    open_neural(&args.neural, &neural)?;
+    let pair = FontPair::open(&original, args.index, &neural)?;
+    let selection = args.selection.selection()?;
+    let gids = selection.resolve(pair.original(), pair.font().modelled_glyphs())?;
+    let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));
+    let json = args.json.as_deref().filter(|_| !json_to_stdout).map(Output::new).transpose()?;
+    let page = args.html.as_deref().map(page_in).transpose()?;
+    let picture = args.png.as_deref().map(Output::new).transpose()?;
+
+    let names = [&args.original, &args.neural].map(|path| path.display().to_string());
+    let report = pair.report([&names[0], &names[1]], &gids, &args.ppem, args.jobs)?;
+    let as_json = serde_json::to_string_pretty(&report).map_err(|e| Failure::failed(e.to_string()))? + "\n";
+    let table = if json_to_stdout { as_json.clone() } else { report.to_string() };
+    io::stdout().write_all(table.as_bytes())?;
+    if let Some(output) = json {
+        output.write(as_json.as_bytes())?;
+    }
+    if let Some(output) = page {
+        let text = sample(pair.original(), &selection, &gids, PANGRAM);
+        let sizes = shown(&args.ppem, |ppem| PAGE_SIZES.contains(&ppem));
+        let advance = |gid, ppem: u16| pair.font().advance(gid, ppem.into());
+        let text = Sample { gids: &text, sizes: &sizes, advance: &advance };
+        let html = pair.with_sources(&gids, |sources| html::page(&report, sources, &text))?;
+        output.write(html.as_bytes())?;
+    }
+    if let Some(output) = picture {
+        let text = sample(pair.original(), &selection, &gids, WORD);
+        output.write(&pair.with_sources(&gids, |sources| draw(args, &pair, &report, sources, &text))?)?;
+    }
+    let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&report));
+    if failures.is_empty() { Ok(()) } else { Err(Failure::failed(failures.join("; "))) }
+}
+
+/// The page's file, with its directory made.
+fn page_in(directory: &Path) -> Result<Output, Failure> {
+    fs::create_dir_all(directory)
+        .map_err(|e| Failure::failed(format!("cannot make the directory {} ({e})", directory.display())))?;
+    Output::new(&directory.join("index.html"))
+}
+
+/// The usual sizes among those compared.
+fn shown(ppem: &PpemList, usual: impl Fn(u16) -> bool) -> Vec<u16> {
+    let sizes: Vec<u16> = ppem.sizes().iter().copied().filter(|&size| usual(size)).collect();
+    if sizes.is_empty() { ppem.sizes().iter().copied().take(FALLBACK_SIZES).collect() } else { sizes }
+}
+
+/// The comparison picture.
+fn draw(
+    args: &Args,
+    pair: &FontPair<'_>,
+    report: &Report,
+    sources: Sources<'_>,
+    text: &[u16],
+) -> Result<Vec<u8>, Error> {
+    let few = args.ppem.sizes().len() <= PICTURE_SIZES.len();
+    let mut rows = Vec::new();
+    for ppem in shown(&args.ppem, |size| few || PICTURE_SIZES.contains(&size)) {
+        let line = |source: &dyn nfr_convert::compare::source::Source| {
+            text_line(source.at(ppem)?.as_mut(), text, |gid| pair.font().advance(gid, ppem.into()))
+        };
+        let cells = vec![line(sources.neural)?, line(sources.truth)?, line(sources.unhinted)?];
+        rows.push(Row { label: ppem.to_string(), cells });
+    }
+    let heading = |who: &str, mae: f64| format!("{who} - mae {mae:.4}");
+    let totals = &report.totals;
+    let headings = [
+        heading("neural", totals.neural.figures.mae),
+        "hinted".to_owned(),
+        heading("unhinted", totals.unhinted.figures.mae),
+    ];
+    sheet(&headings.each_ref().map(String::as_str), &rows, args.zoom)?.png()
+}

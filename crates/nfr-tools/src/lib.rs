@@ -1,0 +1,21 @@
+//! The command-line tools as functions; the binaries only parse their arguments.
+//!
+//! Exit codes: 0 done, 1 failed or a threshold missed, 2 wrong usage. Results go to stdout, progress and
+//! messages to stderr.
+
+#![forbid(unsafe_code)]
+
+pub mod convert;
+pub mod diff;
+pub mod info;
+#[cfg(feature = "lab")]
+pub mod lab;
+pub mod render;
+
+mod args;
+mod failure;
+mod files;
+mod progress;
+
+pub use args::SelectionArgs;
+pub use failure::{Failure, finish};

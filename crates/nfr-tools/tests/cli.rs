@@ -1,0 +1,184 @@
+//! The tools refuse what they cannot do, say why and what to do, and leave files alone. Nothing here trains.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Directory, SANS, collection, nfr, nfr_convert, sans, sans_with};
+
+/// Converts a font file with few glyphs at few sizes, should it get that far.
+fn convert(directory: &Directory, input: &str, more: &[&str]) -> common::Run {
+    let output = directory.name("out.ttf");
+    nfr_convert(&[&["--ppem", "10-11", "--gids", "36", input, &output], more].concat())
+}
+
+#[test]
+fn help_and_version_succeed() {
+    for args in [["--help"], ["--version"]] {
+        assert_eq!((nfr(&args).code, nfr_convert(&args).code), (0, 0));
+    }
+    for command in ["render", "diff", "info"] {
+        assert!(nfr(&[command, "--help"]).succeeds().stdout.contains("Usage: nfr "));
+    }
+}
+
+#[test]
+fn what_is_no_font_is_refused() {
+    let directory = Directory::new();
+    for bytes in [b"".as_slice(), b"hello", &[0; 4096], b"<html></html>"] {
+        let input = directory.write("in.ttf", bytes);
+        convert(&directory, &input, &[]).fails_with(&["in.ttf", "pass a .ttf"]);
+        nfr(&["info", &input]).fails_with(&["in.ttf", "pass a .ttf"]);
+        nfr(&["render", &input, "--json"]).fails_with(&["in.ttf", "pass a .ttf"]);
+        nfr(&["diff", SANS, &input]).fails_with(&["in.ttf", "pass a .ttf"]);
+    }
+    let web_font = directory.write("in.woff2", b"wOF2\0\x01\0\0");
+    convert(&directory, &web_font, &[]).fails_with(&["in.woff2", "decompress"]);
+}
+
+#[test]
+fn a_truncated_font_is_called_so() {
+    let directory = Directory::new();
+    let font = sans();
+    for len in [font.len() - 1, font.len() / 2, 2000] {
+        let input = directory.write("in.ttf", &font[..len]);
+        convert(&directory, &input, &[]).fails_with(&["in.ttf", "truncated", "get the file again"]);
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there_is_named() {
+    let directory = Directory::new();
+    let missing = directory.name("missing.ttf");
+    for run in [
+        convert(&directory, &missing, &[]),
+        nfr(&["info", &missing]),
+        nfr(&["render", &missing, "--json"]),
+        nfr(&["diff", &missing, SANS]),
+        convert(&directory, SANS, &["--text-file", &missing]),
+    ] {
+        run.fails_with(&["cannot read", "missing.ttf", "check the path"]);
+    }
+}
+
+#[test]
+fn a_font_that_cannot_teach_is_refused_with_the_reason() {
+    let directory = Directory::new();
+    let refused = |font: &[u8], parts: &[&str]| {
+        let input = directory.write("in.ttf", font);
+        convert(&directory, &input, &[]).fails_with(&[&["in.ttf"], parts].concat());
+    };
+    refused(&sans_with(&[b"glyf", b"loca"], &[]), &["glyf", "pass a TrueType font"]);
+    refused(&sans_with(&[b"fpgm", b"prep"], &[]), &["no hint programs", "pass a hinted font"]);
+    refused(&sans_with(&[], &[(b"Nfrt", b"models")]), &["'Nfrt'", "already"]);
+}
+
+#[test]
+fn a_collection_index_must_exist() {
+    let directory = Directory::new();
+    let input = directory.write("in.ttc", &collection(&sans()));
+    convert(&directory, &input, &["--index", "1"]).fails_with(&["in.ttc", "collection of 1", "use 0"]);
+    convert(&directory, SANS, &["--index", "2"]).fails_with(&["index 2", "use index 0"]);
+    convert(&directory, SANS, &["--index", "one"]).rejects_usage(&["--index"]);
+}
+
+#[test]
+fn what_is_not_in_the_font_is_named() {
+    let directory = Directory::new();
+    let refused = |args: &[&str], parts: &[&str]| {
+        let output = directory.name("out.ttf");
+        nfr_convert(&[&[SANS, &output], args].concat()).fails_with(parts);
+    };
+    refused(&["--text", "a一"], &["'一' (U+4E00)", "--text"]);
+    refused(&["--unicodes", "U+61,U+10FFFF"], &["U+10FFFF", "--unicodes"]);
+    refused(&["--gids", "3,2620"], &["glyph 2620", "0-2619", "--gids"]);
+    refused(&["--glyphs", "a,nosuch"], &["'nosuch'", "--glyphs"]);
+    refused(&["--text", ""], &["selection is empty"]);
+    let text = directory.write("text", b"a\xff");
+    refused(&["--text-file", &text], &["text", "UTF-8 at byte 1"]);
+}
+
+#[test]
+fn options_that_make_no_sense_are_wrong_usage() {
+    let directory = Directory::new();
+    let refused = |args: &[&str], parts: &[&str]| {
+        let output = directory.name("out.ttf");
+        nfr_convert(&[&[SANS, &output], args].concat()).rejects_usage(parts);
+    };
+    refused(&["--ppem", "8-"], &["--ppem", "8-64"]);
+    refused(&["--ppem", "0"], &["outside 1-1024"]);
+    refused(&["--ppem", "20-10"], &["backwards"]);
+    refused(&["--ppem", "8,10,11"], &["8,10-11", "one range"]);
+    refused(&["--train-ppem", "8,10,11"], &["--train-ppem 8,10-11", "one range"]);
+    refused(&["--target", "sharp"], &["smooth, mono or lcd"]);
+    refused(&["--jobs", "0"], &["--jobs", "1 or more"]);
+    refused(&["--seed", "x"], &["--seed"]);
+    refused(&["--gids", "5-3"], &["--gids", "5-9"]);
+    refused(&["--unicodes", "U+XYZ"], &["--unicodes", "U+20-7E"]);
+    refused(&["--glyphs", ","], &["list is empty"]);
+    refused(&["--quiet", "--verbose"], &["--quiet", "--verbose"]);
+    refused(&["--nosuch"], &["--nosuch"]);
+    for quality in ["-1", "100.1", "best", "NaN"] {
+        refused(&[&format!("--quality={quality}")], &["--quality", "0 to 100"]);
+    }
+    nfr_convert(&[SANS]).rejects_usage(&["<OUTPUT>"]);
+    nfr(&["nosuch"]).rejects_usage(&["nosuch"]);
+    nfr(&["render", SANS]).rejects_usage(&["--json", "--png"]);
+    nfr(&["render", SANS, "--json", "--zoom", "0"]).rejects_usage(&["--zoom"]);
+    nfr(&["diff", SANS]).rejects_usage(&["<NEURAL>"]);
+    for expression in ["mae", "mae>", "mea>1", "mae=1", "mae>1 or max>1", ""] {
+        nfr(&["diff", SANS, SANS, "--fail-on", expression]).rejects_usage(&["--fail-on", "mae>0.006"]);
+    }
+}
+
+#[test]
+fn a_font_without_models_is_refused_with_advice() {
+    for run in [nfr(&["info", SANS]), nfr(&["render", SANS, "--json"]), nfr(&["diff", SANS, SANS])] {
+        run.fails_with(&["LiberationSans-Regular.ttf", "no 'Nfrt' table", "nfr-convert"]);
+    }
+    let directory = Directory::new();
+    let damaged = directory.write("damaged.ttf", &sans_with(&[], &[(b"Nfrt", &[0; 10])]));
+    for run in
+        [nfr(&["info", &damaged]), nfr(&["render", &damaged, "--json"]), nfr(&["diff", SANS, &damaged])]
+    {
+        run.fails_with(&["damaged.ttf"]);
+    }
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_found_out_before_training() {
+    // Training would show in a line for the glyph, before the error's.
+    let directory = Directory::new();
+    let (out, missing, here) =
+        (directory.name("out.ttf"), directory.name("no/such/out.ttf"), directory.name("."));
+    let convert =
+        |more: &[&str]| nfr_convert(&[&["--gids", "36", "--ppem", "12", "--verbose", SANS], more].concat());
+    convert(&[&missing]).fails_with(&["cannot write", "no/such/out.ttf"]);
+    convert(&[&here]).fails_with(&["cannot write", "directory"]);
+    convert(&[&out, "--report", &missing]).fails_with(&["cannot write", "no/such/out.ttf"]);
+    assert!(directory.files().is_empty());
+}
+
+#[test]
+fn the_input_is_never_overwritten() {
+    let directory = Directory::new();
+    let input = directory.write("in.ttf", &sans());
+    let convert = |more: &[&str]| nfr_convert(&[&["--gids", "36", "--ppem", "12", &input], more].concat());
+    convert(&[&input]).rejects_usage(&["the output is the input"]);
+    convert(&[&directory.name("./in.ttf")]).rejects_usage(&["the output is the input"]);
+    let output = directory.name("out.ttf");
+    convert(&[&output, "--report", &input]).rejects_usage(&["the report is the input"]);
+    convert(&[&output, "--report", &output]).rejects_usage(&["the report is the output"]);
+    assert_eq!(std::fs::read(input).unwrap(), sans());
+}
+
+#[test]
+fn a_failure_leaves_an_existing_output_as_it_was() {
+    let directory = Directory::new();
+    let output = directory.write("out.ttf", b"precious");
+    nfr_convert(&[SANS, &output, "--text", "一"]).fails_with(&["U+4E00"]);
+    let unhinted = directory.write("in.ttf", &sans_with(&[b"fpgm", b"prep"], &[]));
+    nfr_convert(&[&unhinted, &output, "--gids", "36", "--ppem", "12"]).fails_with(&["no hint programs"]);
+    assert_eq!(std::fs::read(&output).unwrap(), b"precious");
+    assert_eq!(directory.files(), ["in.ttf", "out.ttf"]);
+}

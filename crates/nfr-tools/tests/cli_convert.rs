@@ -1,0 +1,243 @@
+//! A font is converted with the tools and used with them, as a person would.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::sync::OnceLock;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::Value;
+
+use common::{Directory, SANS, collection, nfr, nfr_convert, sans};
+use nfr::Font;
+
+/// 'a' and 'g' of Liberation Sans.
+const GIDS: [u64; 2] = [68, 74];
+const SIZES: std::ops::RangeInclusive<u64> = 10..=14;
+
+/// Few glyphs at few sizes, so that training takes seconds.
+const QUICK: [&str; 4] = ["--text", "ag", "--ppem", "10-14"];
+/// For what needs any font that is converted.
+const QUICKEST: [&str; 4] = ["--text", "i", "--ppem", "12"];
+
+struct Converted {
+    directory: Directory,
+    font: String,
+    stdout: String,
+}
+
+/// One conversion that several tests look at.
+fn converted() -> &'static Converted {
+    static CONVERTED: OnceLock<Converted> = OnceLock::new();
+    CONVERTED.get_or_init(|| {
+        let directory = Directory::new();
+        let (font, report) = (directory.name("out.ttf"), directory.name("report.json"));
+        let args = [&QUICK[..], &["--report", &report, "--jobs", "1", SANS, &font]].concat();
+        let stdout = nfr_convert(&args).succeeds().stdout;
+        Converted { directory, font, stdout }
+    })
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn a_conversion_prints_a_summary_and_writes_a_report() {
+    let converted = converted();
+    for part in ["2 glyphs", "10-14 ppem", "bytes", "per glyph", "mae", "bad16", " s\n"] {
+        assert!(converted.stdout.contains(part), "{part:?} is not in {}", converted.stdout);
+    }
+    let report = json(&std::fs::read_to_string(converted.directory.path("report.json")).unwrap());
+    assert_eq!((&report["target"], &report["ppem"]), (&"smooth".into(), &"10-14".into()));
+    let gids: Vec<_> =
+        report["glyphs"].as_array().unwrap().iter().map(|g| g["gid"].as_u64().unwrap()).collect();
+    assert_eq!(gids, GIDS);
+    assert_eq!(number(&report["bytes_per_glyph"]), number(&report["table_bytes"]) / 2.0);
+    assert_eq!(report["output_bytes"], std::fs::metadata(&converted.font).unwrap().len());
+    assert_eq!(report["mae"], report["comparison"]["totals"]["neural"]["mae"]);
+    assert_eq!(converted.directory.files(), ["out.ttf", "report.json"]);
+}
+
+#[test]
+fn render_prints_every_field_of_every_glyph_and_size() {
+    let out = nfr(&["render", &converted().font, "--ppem", "10-14", "--json"]).succeeds().stdout;
+    let data = std::fs::read(&converted().font).unwrap();
+    let font = Font::parse(&data).unwrap();
+    let cells: Vec<_> = GIDS.iter().flat_map(|gid| SIZES.map(move |ppem| (*gid, ppem))).collect();
+    assert_eq!(out.lines().count(), cells.len());
+    for (line, (gid, ppem)) in out.lines().zip(cells) {
+        let line = json(line);
+        let fields: Vec<_> = line.as_object().unwrap().keys().map(String::as_str).collect();
+        assert_eq!(fields.len(), 8, "{fields:?}");
+        assert_eq!((line["gid"].as_u64(), line["ppem"].as_u64()), (Some(gid), Some(ppem)));
+        let bitmap = font.glyph(gid as u16).unwrap().render(ppem as f32).unwrap();
+        let place = bitmap.placement;
+        assert_eq!(line["left"].as_i64(), Some(place.left.into()));
+        assert_eq!(line["top"].as_i64(), Some(place.top.into()));
+        assert_eq!(line["width"].as_u64(), Some(place.width.into()));
+        assert_eq!(line["height"].as_u64(), Some(place.height.into()));
+        assert_eq!(STANDARD.decode(line["pixels"].as_str().unwrap()).unwrap(), bitmap.pixels);
+        // Both letters are 1139/2048 em wide.
+        assert!((number(&line["advance"]) - 1139.0 / 2048.0 * ppem as f64).abs() < 1e-4, "{line}");
+        // Both stand on or below the baseline and are about half an em high.
+        assert!((place.top - (ppem as f64 * 0.53).round() as i32).abs() <= 1, "{line}");
+    }
+}
+
+#[test]
+fn render_draws_sheets() {
+    let converted = converted();
+    let directory = Directory::new();
+    let size = |args: &[&str]| {
+        let png = directory.name("sheet.png");
+        let all = [&["render", &converted.font, "--ppem", "12", "--png", &png], args].concat();
+        assert_eq!(nfr(&all).succeeds().stdout, "");
+        image::image_dimensions(&png).unwrap()
+    };
+    let (once, gag) = (size(&["--text", "ag"]), size(&["--text", "gagag"]));
+    assert!(gag.0 > once.0, "a longer text is not wider: {once:?}, {gag:?}");
+    let zoomed = size(&["--text", "ag", "--zoom", "4"]);
+    // The two letters are at least 12 pixels wide and 6 high.
+    assert!(zoomed.0 >= once.0 + 3 * 12 && zoomed.1 >= once.1 + 3 * 6, "{once:?}, {zoomed:?}");
+    assert!(size(&[]).0 > 12);
+}
+
+#[test]
+fn a_glyph_without_a_model_is_an_error_that_says_so() {
+    let font = &converted().font;
+    nfr(&["render", font, "--text", "b", "--json"]).fails_with(&["glyph 69 has no model"]);
+    nfr(&["diff", SANS, font, "--text", "b"]).fails_with(&["glyph 69 has no model"]);
+}
+
+#[test]
+fn info_describes_the_font() {
+    let converted = converted();
+    let info = json(&nfr(&["info", &converted.font, "--json"]).succeeds().stdout);
+    assert_eq!(info["target"], "smooth");
+    assert_eq!((info["first_ppem"].as_u64(), info["last_ppem"].as_u64()), (Some(10), Some(14)));
+    assert_eq!(info["glyphs_with_models"], 2);
+    assert_eq!(info["glyphs"], 2620);
+    assert_eq!(info["outlines_match"], true);
+    assert_eq!(info["file_bytes"], std::fs::metadata(&converted.font).unwrap().len());
+    assert_eq!(number(&info["bytes_per_glyph"]), number(&info["table_bytes"]) / 2.0);
+    assert!(info["version"].as_str().unwrap().starts_with("1."));
+    let text = nfr(&["info", &converted.font]).succeeds().stdout;
+    for part in ["smooth", "10-14 ppem", "2 of 2620 have models"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn diff_reports_both_sides_by_size_and_glyph() {
+    let font = &converted().font;
+    let args = ["diff", SANS, font, "--ppem", "10-14", "--json", "-"];
+    let run = nfr(&[&args[..], &["--jobs", "1"]].concat()).succeeds();
+    assert_eq!(run.stdout, nfr(&[&args[..], &["--jobs", "3"]].concat()).succeeds().stdout);
+    let report = json(&run.stdout);
+    assert_eq!(report["glyphs"], 2);
+    assert_eq!(report["by_ppem"].as_array().unwrap().len(), 5);
+    assert_eq!(report["by_glyph"].as_array().unwrap().len(), 2);
+    assert_eq!(report["bands"].as_array().unwrap().len(), 1);
+    for who in ["neural", "unhinted"] {
+        let figures = &report["totals"][who];
+        for metric in ["mae", "rmse", "max", "bad16", "exact"] {
+            assert!((0.0..=1.0).contains(&number(&figures[metric])), "{who} {metric}: {figures}");
+        }
+        assert!(GIDS.contains(&figures["max_at"]["gid"].as_u64().unwrap()));
+        assert!(SIZES.contains(&figures["max_at"]["ppem"].as_u64().unwrap()));
+    }
+    // The models are there to be nearer to the hinted bitmaps than the outline is.
+    let mae = |who: &str| number(&report["totals"][who]["mae"]);
+    assert!(mae("neural") < mae("unhinted") / 2.0, "{} against {}", mae("neural"), mae("unhinted"));
+    let worst: Vec<_> =
+        report["by_glyph"].as_array().unwrap().iter().map(|g| number(&g["neural"]["mae"])).collect();
+    assert!(worst[0] >= worst[1]);
+    let table = nfr(&["diff", SANS, font, "--ppem", "10-14"]).succeeds().stdout;
+    assert!(table.contains("unhinted") && table.contains("worst glyphs"), "{table}");
+}
+
+#[test]
+fn diff_writes_a_page_and_a_picture_that_need_nothing_else() {
+    let directory = Directory::new();
+    let (page, png, report) =
+        (directory.name("page/here"), directory.name("picture.png"), directory.name("report"));
+    let font = &converted().font;
+    let args = ["diff", SANS, font, "--ppem", "10-14", "--html", &page, "--png", &png, "--json", &report];
+    assert!(nfr(&args).succeeds().stdout.contains("worst glyphs"));
+    let html = std::fs::read_to_string(directory.path("page/here/index.html")).unwrap();
+    for part in ["<svg", "polyline", "data:image/png;base64,", "68 a", "74 g", "</html>"] {
+        assert!(html.contains(part), "{part}");
+    }
+    assert!(!html.contains("http"), "the page loads something");
+    assert!(image::image_dimensions(&png).unwrap().0 > 100);
+    assert_eq!(json(&std::fs::read_to_string(&report).unwrap())["glyphs"], 2);
+    assert_eq!(directory.files(), ["page", "picture.png", "report"]);
+}
+
+#[test]
+fn a_missed_threshold_exits_with_1_and_a_kept_one_with_0() {
+    let diff = |expression: &str| {
+        nfr(&["diff", SANS, &converted().font, "--ppem", "10-14", "--fail-on", expression])
+    };
+    diff("mae>0.9 || bytes_per_glyph>100000, exact<0").succeeds();
+    let missed = diff("mae>0.9 || bytes_per_glyph>1");
+    assert_eq!(missed.code, 1);
+    assert!(missed.stderr.starts_with("error: bytes_per_glyph is "), "{}", missed.stderr);
+    assert!(missed.stdout.contains("worst glyphs"), "the report is missing");
+    assert_eq!(diff("exact>=0").code, 1);
+}
+
+#[test]
+fn diff_refuses_a_font_that_is_not_the_original() {
+    let serif = SANS.replace("Sans-", "Serif-");
+    nfr(&["diff", &serif, &converted().font]).fails_with(&["not the same in the two fonts"]);
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_the_font() {
+    let directory = Directory::new();
+    let other = directory.name("other.ttf");
+    let args = [&QUICK[..], &["--jobs", "2", "--quiet", SANS, &other]].concat();
+    let run = nfr_convert(&args).succeeds();
+    assert_eq!((run.stdout, run.stderr), (String::new(), String::new()));
+    assert!(std::fs::read(other).unwrap() == std::fs::read(&converted().font).unwrap());
+}
+
+#[test]
+fn a_converted_font_is_not_converted_again() {
+    let directory = Directory::new();
+    let output = directory.name("out.ttf");
+    nfr_convert(&[&QUICKEST[..], &[&converted().font, &output]].concat()).fails_with(&["'Nfrt'", "already"]);
+    assert!(directory.files().is_empty());
+}
+
+#[test]
+fn a_failed_conversion_leaves_an_existing_output_as_it_was() {
+    let directory = Directory::new();
+    let output = directory.write("out.ttf", b"precious");
+    // The report cannot be written, which must be known before the output is replaced.
+    let run = nfr_convert(&[&QUICKEST[..], &[SANS, &output, "--report", "/no/such/report"]].concat());
+    run.fails_with(&["cannot write /no/such/report"]);
+    assert_eq!(std::fs::read(&output).unwrap(), b"precious");
+    nfr_convert(&[&QUICKEST[..], &[SANS, &output]].concat()).succeeds();
+    assert_eq!(&std::fs::read(&output).unwrap()[..4], [0, 1, 0, 0]);
+    assert_eq!(directory.files(), ["out.ttf"]);
+}
+
+#[test]
+fn a_font_of_a_collection_is_converted_and_compared() {
+    let directory = Directory::new();
+    let input = directory.write("in.ttc", &collection(&sans()));
+    let output = directory.name("out.ttf");
+    let run =
+        nfr_convert(&[&QUICKEST[..], &["--index", "0", "--verbose", &input, &output]].concat()).succeeds();
+    assert!(run.stderr.contains("glyph 76 i: mae 0.0"), "{}", run.stderr);
+    nfr(&["diff", &input, &output, "--ppem", "12"]).succeeds();
+}

@@ -1,0 +1,187 @@
+//! `nfr lab` as a person calls it: every command, for an epoch or two.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Directory, SANS, nfr};
+
+const ROBOTO: [&str; 3] = [
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/Roboto_500Medium.ttf"),
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/Roboto_600SemiBold.ttf"),
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/Roboto_700Bold.ttf"),
+];
+const LABEL: &str = "SMALL SCALE, not the published one";
+
+fn lab(args: &[&str], more: &[&str]) -> common::Run {
+    nfr(&[&["lab"], args, more].concat())
+}
+
+fn read(directory: &Directory, name: &str) -> String {
+    std::fs::read_to_string(directory.name(name)).unwrap()
+}
+
+#[test]
+fn every_command_has_help() {
+    for command in ["truth", "implicit", "masked", "grid-fit", "store", "weights", "styles", "report"] {
+        assert!(lab(&[command, "--help"], &[]).succeeds().stdout.contains("Usage: nfr lab "));
+    }
+}
+
+#[test]
+fn the_truth_is_written_as_pictures_and_a_manifest_and_replaced() {
+    let directory = Directory::new();
+    let out = directory.name("made/truth");
+    for sides in [["--first", "20", "--last", "22"], ["--first", "21", "--last", "21"]] {
+        let run = lab(&["truth", SANS, "--set", "abg", "--out", &out], &sides).succeeds();
+        assert!(run.stdout.contains("ppem") && run.stdout.contains(&out));
+    }
+    let manifest: serde_json::Value =
+        serde_json::from_str(&read(&directory, "made/truth/manifest.json")).unwrap();
+    assert_eq!(manifest["sizes"].as_array().unwrap().len(), 1, "the second truth replaced the first");
+    assert!(std::path::Path::new(&directory.name("made/truth/21/u0067.png")).is_file());
+    assert!(!std::path::Path::new(&directory.name("made/truth/20")).exists());
+}
+
+#[test]
+fn wrong_usage_is_told() {
+    let out = ["--out", "/nonexistent/never"];
+    lab(&["implicit", SANS, "--text", "l", "--scale", "huge"], &out).rejects_usage(&["paper or small"]);
+    lab(&["implicit", SANS, "--text", "l", "--without", "hope"], &out)
+        .rejects_usage(&["frequencies, memorisation"]);
+    lab(&["masked", SANS, "--text", ""], &out).rejects_usage(&["--text"]);
+    lab(&["masked", SANS, "--text", "l", "--boxes", "20-64"], &out).rejects_usage(&["64", "20-63"]);
+    lab(&["masked", SANS, "--text", "l", "--boxes", "many"], &out).rejects_usage(&["many"]);
+    lab(&["truth", SANS, "--first", "30", "--last", "20"], &out).rejects_usage(&["the smallest first"]);
+    lab(&["store", SANS, "out.ttf", "--text", "l", "--bits", "7"], &out).rejects_usage(&["16 or 8"]);
+    lab(&["implicit", SANS, "--text", "\u{1F600}"], &out).fails_with(&["U+1F600"]);
+    lab(&["truth", "/nonexistent.ttf"], &out).fails_with(&["/nonexistent.ttf"]);
+    if cfg!(not(feature = "cuda")) {
+        lab(&["masked", SANS, "--text", "l", "--device", "cuda"], &out).rejects_usage(&["--features cuda"]);
+    }
+}
+
+#[test]
+fn trainings_leave_history_errors_and_settings_and_are_gone_on_with_only_when_asked() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let more = ["--out", &out, "--epochs", "15", "--text", "l", "--quiet"];
+    for command in ["implicit", "masked"] {
+        let first = lab(&[command, SANS], &more).succeeds();
+        assert!(first.stdout.starts_with(LABEL) && first.stdout.contains("mse"));
+        lab(&[command, SANS], &more).fails_with(&["--resume", "checkpoint"]);
+        let place = format!("out/{command}/LiberationSans-Regular/u006c");
+        let history = read(&directory, &format!("{place}/history.csv"));
+        assert!(history.starts_with(&format!("# {LABEL}")) && history.lines().count() == 2 + 15);
+        assert!(history.lines().filter(|line| line.ends_with(",1")).count() >= 1, "resets are marked");
+        assert!(read(&directory, &format!("{place}/errors.csv")).contains("U+006C,20,"));
+        assert!(read(&directory, &format!("{place}/loss.svg")).contains(LABEL));
+        assert!(std::path::Path::new(&directory.name(&format!("{place}/comparison.png"))).is_file());
+        let again = lab(&[command, SANS, "--resume"], &more).succeeds();
+        assert_eq!(again.stdout, first.stdout, "nothing was trained again");
+    }
+    assert!(
+        lab(&["implicit", SANS, "--resume"], &more)
+            .succeeds()
+            .stdout
+            .contains("4080 pixels in a wrong class")
+    );
+    let settings: serde_json::Value = serde_json::from_str(&read(&directory, "out/settings.json")).unwrap();
+    assert_eq!((&settings["scale"], &settings["implicit_epochs"]), (&"small".into(), &15.into()));
+}
+
+#[test]
+fn our_own_model_is_trained_on_the_same_bitmaps() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let args = ["grid-fit", SANS, "--text", "l", "--boxes", "20,24", "--out", &out, "--quiet"];
+    let run = lab(&args, &[]).succeeds();
+    assert!(run.stdout.starts_with(LABEL) && run.stdout.contains(" bytes") && !run.stdout.contains("loss"));
+    let errors = read(&directory, "out/grid-fit/LiberationSans-Regular/u006c/errors.csv");
+    let worst =
+        errors.lines().skip(2).filter_map(|line| line.split(',').nth(5)?.parse().ok()).fold(0.0, f64::max);
+    assert!(worst > 0.0 && worst < 1e-3, "{errors}");
+    assert!(
+        !std::path::Path::new(&directory.name("out/grid-fit/LiberationSans-Regular/u006c/loss.svg")).exists()
+    );
+}
+
+#[test]
+fn boxes_and_epochs_other_than_the_scales_are_told() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let fewer = ["--scale", "paper", "--boxes", "20,22-26:4", "--epochs", "1", "--out", &out, "--quiet"];
+    let run = lab(&["masked", SANS, "--text", "l"], &fewer).succeeds();
+    assert!(run.stdout.starts_with("PUBLISHED WIDTHS, not the published sizes and epochs: 3 sizes"));
+    let errors = read(&directory, "out/masked/LiberationSans-Regular/u006c/errors.csv");
+    let sides: Vec<&str> = errors.lines().skip(2).filter_map(|line| line.split(',').nth(3)).collect();
+    assert_eq!(sides, ["20", "22", "26"], "{errors}");
+}
+
+#[test]
+fn a_network_is_stored_in_a_font_that_draws_it() {
+    let directory = Directory::new();
+    let (out, font) = (directory.name("out"), directory.name("network.ttf"));
+    let args =
+        ["store", SANS, &font, "--text", "l", "--bits", "8", "--epochs", "2", "--out", &out, "--quiet"];
+    let run = lab(&args, &[]).succeeds();
+    assert!(run.stdout.contains("8 bits") && run.stdout.contains("bytes"));
+    assert!(nfr(&["info", &font]).succeeds().stdout.contains("network"));
+    let drawn = nfr(&["render", &font, "--text", "l", "--ppem", "19", "--json"]).succeeds().stdout;
+    assert!(drawn.contains("\"ppem\":19"));
+}
+
+#[test]
+fn a_family_is_drawn_between_its_weights() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let more = ["--text", "l", "--epochs", "1", "--out", &out, "--quiet"];
+    let [medium, semi, bold] = ROBOTO;
+    let run = lab(&["weights", medium, bold, "--between", semi], &more).succeeds();
+    assert!(run.stdout.starts_with(LABEL) && run.stdout.contains("grid-fit snapped"));
+    assert!(read(&directory, "out/weights/u006c/errors.csv").contains("Roboto_600SemiBold"));
+    lab(&["weights", bold, medium, "--between", semi], &more).fails_with(&["from light to bold"]);
+    let styles = lab(&["styles", medium, SANS], &more).succeeds();
+    assert!(styles.stdout.contains("no truth"));
+}
+
+#[test]
+fn the_report_shows_every_chart_and_picture_that_it_names() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let fonts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts");
+    let args = [
+        "report", "--fonts", fonts, "--text", "li", "--part", "li", "--epochs", "1", "--out", &out, "--quiet",
+    ];
+    let run = lab(&args, &[]).succeeds();
+    assert!(run.stdout.starts_with(LABEL) && run.stdout.contains("index.html"));
+    let page = read(&directory, "out/report/index.html");
+    assert!(page.contains(LABEL) && page.contains("does not hold"));
+    let sources: Vec<&str> = page.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert!(sources.len() >= 15, "{sources:?}");
+    for source in sources {
+        assert!(std::path::Path::new(&directory.name(&format!("out/report/{source}"))).is_file(), "{source}");
+    }
+    for table in ["errors", "ablations", "weights", "resizing", "unhinted", "stored", "trainings", "claims"] {
+        assert!(
+            read(&directory, &format!("out/report/{table}.csv")).starts_with(&format!("# {LABEL}")),
+            "{table}"
+        );
+    }
+}
+
+#[test]
+fn info_tells_of_networks() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../spec/vectors/network.ttf");
+    let data = std::fs::read(path).unwrap();
+    let font = nfr::Font::parse(&data).unwrap();
+    let bytes: usize = font.networks().map(|gid| font.model_len(gid).unwrap()).sum();
+    let text = nfr(&["info", path]).succeeds().stdout;
+    for part in ["version   1.1", &format!("2, {bytes} bytes, weights of 8 bits"), "2 of 3 have models"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let json = nfr(&["info", "--json", path]).succeeds().stdout;
+    for part in ["\"networks\":2", &format!("\"network_bytes\":{bytes}"), "\"network_bits\":[8]"] {
+        assert!(json.contains(part), "{json}");
+    }
+}

@@ -1,0 +1,142 @@
+//! Running the tools as a person would, and fonts that are wrong in one way each.
+
+// Each test program uses a part of this.
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use read_fonts::FontRef;
+use read_fonts::types::Tag;
+use write_fonts::FontBuilder;
+
+pub const SANS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/LiberationSans-Regular.ttf");
+
+/// What a tool printed and how it ended.
+pub struct Run {
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+pub fn nfr(args: &[&str]) -> Run {
+    run(env!("CARGO_BIN_EXE_nfr"), args)
+}
+
+pub fn nfr_convert(args: &[&str]) -> Run {
+    run(env!("CARGO_BIN_EXE_nfr-convert"), args)
+}
+
+fn run(program: &str, args: &[&str]) -> Run {
+    let Output { status, stdout, stderr } = Command::new(program).args(args).output().unwrap();
+    Run {
+        code: status.code().unwrap(),
+        stdout: String::from_utf8(stdout).unwrap(),
+        stderr: String::from_utf8(stderr).unwrap(),
+    }
+}
+
+impl Run {
+    /// Done: exit code 0 and no error.
+    #[track_caller]
+    pub fn succeeds(self) -> Self {
+        assert_eq!(self.code, 0, "{}", self.stderr);
+        assert!(!self.stderr.contains("error"), "{}", self.stderr);
+        self
+    }
+
+    /// Failed: exit code 1, nothing on stdout, and one line on stderr with these parts.
+    #[track_caller]
+    pub fn fails_with(self, parts: &[&str]) -> Self {
+        assert_eq!(self.code, 1, "{}", self.stderr);
+        assert_eq!(self.stdout, "");
+        assert_eq!(self.stderr.lines().count(), 1, "{}", self.stderr);
+        self.says(parts)
+    }
+
+    /// Wrong usage: exit code 2, nothing on stdout, and an error with these parts.
+    #[track_caller]
+    pub fn rejects_usage(self, parts: &[&str]) -> Self {
+        assert_eq!(self.code, 2, "{}", self.stderr);
+        assert_eq!(self.stdout, "");
+        self.says(parts)
+    }
+
+    #[track_caller]
+    fn says(self, parts: &[&str]) -> Self {
+        assert!(self.stderr.starts_with("error: "), "{}", self.stderr);
+        for part in parts {
+            assert!(self.stderr.contains(part), "{part:?} is not in {}", self.stderr);
+        }
+        self
+    }
+}
+
+/// A directory that goes away, with files in it.
+pub struct Directory(tempfile::TempDir);
+
+impl Directory {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub fn name(&self, name: &str) -> String {
+        self.path(name).to_str().unwrap().to_owned()
+    }
+
+    /// Writes a file and gives its path.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> String {
+        std::fs::write(self.path(name), bytes).unwrap();
+        self.name(name)
+    }
+
+    /// The names of its files, sorted; those of temporary files too.
+    pub fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+pub fn sans() -> Vec<u8> {
+    std::fs::read(Path::new(SANS)).unwrap()
+}
+
+/// Liberation Sans without some tables, and with others added.
+pub fn sans_with(without: &[&[u8; 4]], with: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
+    let data = sans();
+    let font = FontRef::new(&data).unwrap();
+    let mut builder = FontBuilder::new();
+    for record in font.table_directory().table_records() {
+        let tag = record.tag();
+        if !without.iter().any(|dropped| Tag::new(dropped) == tag) {
+            builder.add_raw(tag, font.table_data(tag).unwrap().as_bytes().to_vec());
+        }
+    }
+    for (tag, bytes) in with {
+        builder.add_raw(Tag::new(tag), bytes.to_vec());
+    }
+    builder.build()
+}
+
+/// A collection that holds one font (OpenType 1.9, "otff", TTC header 1.0).
+pub fn collection(font: &[u8]) -> Vec<u8> {
+    const HEADER: u32 = 16;
+    const DIRECTORY: usize = 12;
+    const RECORD: usize = 16;
+    let mut file = [b"ttcf".as_slice(), &[0, 1, 0, 0], &1u32.to_be_bytes(), &HEADER.to_be_bytes()].concat();
+    let mut font = font.to_vec();
+    let tables = usize::from(u16::from_be_bytes([font[4], font[5]]));
+    for record in font[DIRECTORY..DIRECTORY + tables * RECORD].chunks_exact_mut(RECORD) {
+        let offset: [u8; 4] = record[8..12].try_into().unwrap();
+        record[8..12].copy_from_slice(&(u32::from_be_bytes(offset) + HEADER).to_be_bytes());
+    }
+    file.extend(font);
+    file
+}
