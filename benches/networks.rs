@@ -1,6 +1,6 @@
 //! Drawing bitmaps with the paper's implicit network.
 //!
-//! `cargo bench --bench networks`: networks of random numbers, which take as long as trained ones, as wide as at the lab's two
+//! `cargo bench --features networks --bench networks`: networks of random numbers, which take as long as trained ones, as wide as at the lab's two
 //! scales, and without the size among their inputs as in the published code. `draw` is all pixels of one box. What the size
 //! gives to a network's layers is worked out for every box anew.
 
@@ -22,7 +22,7 @@ const SIZES: [u16; 2] = [18, 61];
 fn measure(criterion: &mut Criterion) -> Result<(), Box<dyn Error>> {
     for [width, latent, encoder] in WIDTHS {
         let shape = Shape { width, latent, encoder, frequencies: true, residual: true };
-        let network = Network::new(network::network(shape, &SIZES, 1))?;
+        let network = Network::new(network::network(shape, &SIZES, 1)).map_err(|damage| damage.of(0))?;
         for (index, size) in network.sizes().iter().enumerate() {
             let name = format!("draw {} pixels, {width} wide, latent {latent}", u32::from(size.side).pow(2));
             criterion.bench_function(&name, |bencher| {

@@ -20,20 +20,20 @@ use font::{glyphs, neural};
 const SIZES: [f32; 4] = [12.0, 16.0, 24.0, 63.0];
 
 fn measure(criterion: &mut Criterion) -> Result<(), Box<dyn Error>> {
-    let data = neural()?;
-    let font = Font::parse(&data)?;
+    let data: &'static [u8] = neural()?.leak();
+    let font = Font::new(data)?;
     let gids = glyphs(&font)?;
-    for gid in &gids {
-        font.glyph(*gid)?.render(SIZES[0])?;
-    }
     let mut rasterizer = Rasterizer::new(&font);
+    for gid in &gids {
+        rasterizer.render(*gid, SIZES[0])?;
+    }
     // Larger than any of these glyphs.
     let mut pixels = vec![0; 128 * 128];
     for ppem in SIZES {
         criterion.bench_function(&format!("draw at {ppem} ppem"), |bencher| {
             bencher.iter(|| {
                 for gid in &gids {
-                    black_box(rasterizer.render_into(black_box(*gid), ppem, &mut pixels).ok());
+                    black_box(rasterizer.render_into(black_box(*gid), ppem, &mut pixels, 128).ok());
                 }
             });
         });
@@ -47,14 +47,14 @@ fn measure(criterion: &mut Criterion) -> Result<(), Box<dyn Error>> {
     });
     criterion.bench_function("open and draw one", |bencher| {
         bencher.iter(|| {
-            let font = Font::parse(black_box(&data));
-            font.and_then(|font| Rasterizer::new(&font).render_into(gids[0], 16.0, &mut pixels)).ok()
+            let font = Font::new(black_box(data));
+            font.and_then(|font| Rasterizer::new(&font).render_into(gids[0], 16.0, &mut pixels, 128)).ok()
         });
     });
     criterion.bench_function("decode", |bencher| {
         bencher.iter(|| {
             for gid in &gids {
-                black_box(font.glyph(black_box(*gid)).ok());
+                black_box(nfr::internals::decode(&font, black_box(*gid)).ok());
             }
         });
     });

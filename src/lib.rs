@@ -1,34 +1,83 @@
 //! Neural font rendering: hinted bitmaps from small implicit models, with no bytecode interpreter.
 //!
-//! A converted font carries a model for each glyph in a table `Nfrt`. [`Font`] opens it, [`Rasterizer`] draws:
+//! A converted font carries a model for each glyph in a table `Nfrt`. [`Font`] opens it, [`Rasterizer`] draws it.
 //!
 //! ```
-//! # fn draw(file: &[u8]) -> Result<nfr::Bitmap, nfr::Error> {
-//! let font = nfr::Font::parse(file)?;
-//! nfr::Rasterizer::new(&font).render(font.glyph_for_char('g').unwrap_or(0), 16.0)
-//! # }
-//! # assert!(draw(b"no font").is_err());
+//! # static BYTES: &[u8] = include_bytes!("../spec/vectors/sans.ttf");
+//! let font = nfr::Font::new(BYTES)?;
+//! let mut rasterizer = nfr::Rasterizer::new(&font);
+//! let glyph = font.glyph_for_char('a').unwrap_or(0);
+//! for row in rasterizer.draw(glyph, 11.0)?.rows() {
+//!     println!("{}", row.iter().map(|level| [' ', '.', 'o', '#'][usize::from(*level) / 64]).collect::<String>());
+//! }
+//! # Ok::<(), nfr::Error>(())
 //! ```
 
+#![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
-#[doc(hidden)]
-pub mod error;
-#[doc(hidden)]
-pub mod model;
-#[doc(hidden)]
-pub mod render;
-#[doc(hidden)]
-pub mod table;
+extern crate alloc;
+#[cfg(all(feature = "std", not(test)))]
+extern crate std;
+
+mod error;
+mod model;
+mod render;
+mod table;
 
 pub use error::Error;
 pub use model::Target;
-pub use render::{Bitmap, Font, Glyph, MAX_PEN, Placement, Rasterizer, Scratch, Setting};
+pub use render::{
+    Bitmap, BitmapRef, DrawOptions, Font, Limits, LineMetrics, MissingModel, Placement, Rasterizer,
+};
 
 /// What the converter shares with the renderer. No promises: anything in here may change in any release.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::{error, model, render, table};
+    pub use crate::error::Damage;
+    pub use crate::render::{Decoder, Font, Glyph, Scratch, head_units, open, union};
+
+    use crate::Error;
+    use model::gridfit::Scale;
+    use table::{Header, Table};
+
+    /// The models.
+    pub mod model {
+        pub use crate::model::*;
+    }
+
+    /// The table.
+    pub mod table {
+        pub use crate::table::*;
+    }
+
+    /// What the conversion was asked for.
+    pub fn header(font: &Font) -> &Header {
+        font.header()
+    }
+
+    /// The `Nfrt` table.
+    ///
+    /// # Errors
+    ///
+    /// If the bytes are not those any more that the font was opened with.
+    pub fn table(font: &Font) -> Result<Table<'_>, Error> {
+        font.table()
+    }
+
+    /// Units and sizes of all models.
+    pub fn scale(font: &Font) -> Scale {
+        font.scale()
+    }
+
+    /// Decodes a glyph with the default limits.
+    ///
+    /// # Errors
+    ///
+    /// As [`Decoder::glyph`].
+    pub fn decode(font: &Font, glyph: u32) -> Result<Glyph, Error> {
+        font.decode(glyph)
+    }
 }
 
 /// Runs the examples of README as tests.

@@ -8,7 +8,9 @@ use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use suite::{FONTS, File, check, compare, draw, write};
+#[cfg(feature = "networks")]
+use suite::write;
+use suite::{FONTS, File, check, compare, draw};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/spec/vectors");
 
@@ -48,6 +50,7 @@ fn threads_that_share_glyphs_draw_the_same() {
     assert_eq!(outcome, compare(Path::new(FOLDER), &DRAWN).unwrap());
 }
 
+#[cfg(feature = "networks")]
 #[test]
 fn writing_again_changes_no_file() {
     let folder = copied();

@@ -14,7 +14,7 @@ pub(crate) fn neural() -> Result<Vec<u8>, Box<dyn Error>> {
 }
 
 /// The glyphs of `TEXT`, each of which must have a model.
-pub(crate) fn glyphs(font: &Font<'_>) -> Result<Vec<u16>, Box<dyn Error>> {
+pub(crate) fn glyphs(font: &Font) -> Result<Vec<u32>, Box<dyn Error>> {
     let gid = |c| font.glyph_for_char(c).filter(|gid| font.has_model(*gid));
     TEXT.chars().map(|c| gid(c).ok_or_else(|| format!("the font has no model of {c:?}").into())).collect()
 }

@@ -1,7 +1,8 @@
 //! Makes and checks the test vectors of `spec/vectors`. It needs the renderer alone:
 //!
-//! `cargo run --release --no-default-features --example vectors -- check spec/vectors [THREADS]` draws everything again
+//! `cargo run --release --no-default-features --features networks --example vectors -- check spec/vectors [THREADS]` draws everything again
 //! and fails if a byte differs; `write spec/vectors` writes what is drawn. `spec/vectors/README.md` describes the files.
+//! Without the feature `networks` the font of networks is left out.
 
 #![allow(clippy::print_stdout)]
 

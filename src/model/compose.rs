@@ -1,7 +1,9 @@
 //! Glyphs that are put together from the models of others, as accented letters are.
 
+use alloc::vec::Vec;
+
 use super::gridfit::{Scale, floor};
-use crate::error::Error;
+use crate::error::Damage;
 
 /// What does not snap to pixels stands on a grid of this fraction of a pixel, that of scaled outlines.
 const GRID: f32 = 64.0;
@@ -60,18 +62,15 @@ impl Origin {
     /// # Errors
     ///
     /// `Malformed` if it has not one snap for each size.
-    pub fn new(part: &Part, scale: Scale) -> Result<Self, Error> {
+    pub fn new(part: &Part, scale: Scale) -> Result<Self, Damage> {
         if part.snaps.iter().any(|snaps| !snaps.is_empty() && snaps.len() != scale.sizes()) {
-            return Err(Error::Malformed(format!(
-                "glyph {} as a part of others has the wrong number of places; convert the font again",
-                part.gid
-            )));
+            return Err(Damage::Malformed("has the wrong number of places for a part"));
         }
-        let em = part.offset.map(|v| f32::from(v) / f32::from(scale.units_per_em));
+        let em = part.offset.map(|v| f32::from(v) / f32::from(scale.units_per_em()));
         let moves = [0, 1].map(|axis| {
             let moved = |(size, snap): (usize, &i8)| {
                 let ppem = scale.ppem_of(size);
-                let pixel = snapped(part.offset[axis], ppem, scale.units_per_em) + i32::from(*snap);
+                let pixel = snapped(part.offset[axis], ppem, scale.units_per_em()) + i32::from(*snap);
                 pixel as f32 - em[axis] * ppem as f32
             };
             part.snaps[axis].iter().enumerate().map(moved).collect()
@@ -99,9 +98,14 @@ impl Origin {
 mod tests {
     #![allow(clippy::unwrap_used)]
 
+    use alloc::vec;
+
     use super::*;
 
-    const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 10, last_ppem: 12 };
+    const SCALE: Scale = match Scale::new(1000, 10, 12) {
+        Some(scale) => scale,
+        None => unreachable!(),
+    };
 
     #[test]
     fn halves_snap_upwards() {
@@ -130,6 +134,6 @@ mod tests {
     #[test]
     fn a_part_without_a_place_for_each_size_is_malformed() {
         let part = Part { snaps: [vec![], vec![0; 2]], ..Part::default() };
-        assert!(matches!(Origin::new(&part, SCALE), Err(Error::Malformed(_))));
+        assert!(matches!(Origin::new(&part, SCALE), Err(Damage::Malformed(_))));
     }
 }

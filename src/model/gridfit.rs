@@ -6,8 +6,10 @@
 
 mod adjust;
 
+use alloc::vec::Vec;
+
 use super::contour::{FINEST, Frame, LEVELS, Polygons, Tracer};
-use crate::error::Error;
+use crate::error::{Damage, Error};
 use crate::render::Placement;
 
 /// Hinted knot positions are stored in this fraction of a pixel.
@@ -30,6 +32,8 @@ pub const MAX_KNOTS: usize = 32;
 pub const MIN_KNOT_GAP: f32 = 1.0 / 256.0;
 /// A hinted box may reach this far (pixels) into a pixel without claiming it: half a step of the warp.
 pub const BOX_SLACK: f32 = 1.0 / 64.0;
+/// The largest trained size, in pixels per em.
+pub const MAX_TRAINED_PPEM: u16 = 1024;
 /// The largest size that is drawn, in pixels per em.
 pub const MAX_PPEM: f32 = 2048.0;
 /// The longest side of a bitmap in pixels.
@@ -68,15 +72,35 @@ pub struct Weights {
 /// What is the same for all glyphs of a font. Every whole size from the first to the last is a trained one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Scale {
-    /// Font units in an em.
-    pub units_per_em: u16,
-    /// The smallest trained size in pixels per em.
-    pub first_ppem: u16,
-    /// The largest trained size.
-    pub last_ppem: u16,
+    units_per_em: u16,
+    first_ppem: u16,
+    last_ppem: u16,
 }
 
 impl Scale {
+    /// Font units in an em, 16 to 16384, and the smallest and the largest trained size in pixels per em, 1 to
+    /// [`MAX_TRAINED_PPEM`]. `None` for anything else.
+    pub const fn new(units_per_em: u16, first_ppem: u16, last_ppem: u16) -> Option<Self> {
+        let units_fit = units_per_em >= 16 && units_per_em <= 16384;
+        let sizes_fit = first_ppem >= 1 && first_ppem <= last_ppem && last_ppem <= MAX_TRAINED_PPEM;
+        if units_fit && sizes_fit { Some(Self { units_per_em, first_ppem, last_ppem }) } else { None }
+    }
+
+    /// Font units in an em.
+    pub fn units_per_em(&self) -> u16 {
+        self.units_per_em
+    }
+
+    /// The smallest trained size in pixels per em.
+    pub fn first_ppem(&self) -> u16 {
+        self.first_ppem
+    }
+
+    /// The largest trained size in pixels per em.
+    pub fn last_ppem(&self) -> u16 {
+        self.last_ppem
+    }
+
     /// The number of trained sizes.
     pub fn sizes(&self) -> usize {
         usize::from(self.last_ppem - self.first_ppem) + 1
@@ -111,11 +135,15 @@ pub struct Fit {
 }
 
 /// Checks that a size is drawn at all.
+///
+/// # Errors
+///
+/// `InvalidSize` for one that is not.
 pub fn check_ppem(ppem: f32) -> Result<(), Error> {
     if ppem > 0.0 && ppem <= MAX_PPEM {
         return Ok(());
     }
-    Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_PPEM}")))
+    Err(Error::InvalidSize(ppem))
 }
 
 /// The grid's geometry along one axis, in em.
@@ -181,8 +209,8 @@ impl GridFit {
     /// # Errors
     ///
     /// `Malformed` if their lengths contradict each other.
-    pub fn new(weights: &Weights, scale: Scale) -> Result<Self, Error> {
-        let wrong = |what: &str| Err(Error::Malformed(format!("a glyph's model has {what}")));
+    pub fn new(weights: &Weights, scale: Scale) -> Result<Self, Damage> {
+        let wrong = |what: &'static str| Err(Damage::Malformed(what));
         let sizes = scale.sizes();
         let coefficients = (usize::from(weights.cells[0]) + 2) * (usize::from(weights.cells[1]) + 2);
         let rank = usize::from(weights.rank);
@@ -191,23 +219,23 @@ impl GridFit {
                 || weights.field.len() != coefficients
                 || weights.warp_y.knots.is_empty())
         {
-            return wrong("a field of the wrong size");
+            return wrong("has a field of the wrong size");
         }
         for warp in [&weights.warp_x, &weights.warp_y] {
             if warp.hinted.len() != warp.knots.len() * sizes || !warp.knots.is_sorted_by(|a, b| a < b) {
-                return wrong("a warp that does not fit its knots");
+                return wrong("has a warp that does not fit its knots");
             }
             if warp.knots.len() > MAX_KNOTS {
-                return wrong("too many knots");
+                return wrong("has too many knots");
             }
         }
         if weights.patterns.len() != rank * DEFORM_NODES * DEFORM_NODES
             || weights.embedding.len() != rank * sizes
         {
-            return wrong("a deformation that does not fit its rank");
+            return wrong("has a deformation that does not fit its rank");
         }
         if weights.bounds[0] > weights.bounds[2] || weights.bounds[1] > weights.bounds[3] {
-            return wrong("a box with its corners swapped");
+            return wrong("has a box with its corners swapped");
         }
         let em = |v: i16| f32::from(v) / f32::from(scale.units_per_em);
         let bounds = weights.bounds.map(em);
@@ -237,7 +265,7 @@ impl GridFit {
 
     /// Traces the outline.
     fn trace(&mut self) {
-        let mut levels = std::mem::take(&mut self.levels);
+        let mut levels = core::mem::take(&mut self.levels);
         if !self.field.is_empty() {
             Tracer::default().trace(&self.frame(), &mut levels, &LEVELS.map(|(_, tolerance)| tolerance));
             levels.iter_mut().for_each(Polygons::shrink);
@@ -247,7 +275,7 @@ impl GridFit {
 
     /// Finds out anew how the patterns move the outline.
     fn locate(&mut self) {
-        let mut levels = std::mem::take(&mut self.levels);
+        let mut levels = core::mem::take(&mut self.levels);
         levels.iter_mut().for_each(|polygons| polygons.locate(&self.frame()));
         self.levels = levels;
     }
@@ -266,7 +294,7 @@ impl GridFit {
         if let Some(level) = LEVELS.iter().position(|(below, _)| ppem < *below) {
             return &self.levels[level];
         }
-        tracer.trace(&self.frame(), std::slice::from_mut(fresh), &[FINEST]);
+        tracer.trace(&self.frame(), core::slice::from_mut(fresh), &[FINEST]);
         fresh
     }
 
@@ -305,7 +333,7 @@ impl GridFit {
     ///
     /// # Errors
     ///
-    /// `InvalidParameter` for a size that is not in `0..=MAX_PPEM`, `LimitExceeded` for a bitmap that is larger
+    /// `InvalidSize` for a size that is not in `0..=MAX_PPEM`, `BitmapTooLarge` for a bitmap that is larger
     /// than `MAX_SIDE` on a side.
     pub fn placement(&self, ppem: f32) -> Result<Placement, Error> {
         self.placement_at(ppem, [0.0; 2])
@@ -326,7 +354,7 @@ impl GridFit {
             let low = hinted.next();
             self.pixels(axis, ppem, [low, hinted.last()], origin[axis])
         };
-        placement_of([range(0), range(1)], ppem)
+        placement_of([range(0), range(1)])
     }
 
     /// The whole pixels that hinted knots, the first and the last, span along an axis; `None` where there is none.
@@ -348,18 +376,18 @@ impl GridFit {
 ///
 /// # Errors
 ///
-/// `LimitExceeded` for one that is larger than `MAX_SIDE` on a side.
-pub fn placement_of(pixels: [(i32, i32); 2], ppem: f32) -> Result<Placement, Error> {
+/// `BitmapTooLarge` for one that is larger than `MAX_SIDE` on a side.
+pub fn placement_of(pixels: [(i32, i32); 2]) -> Result<Placement, Error> {
     let [(left, right), (bottom, top)] = pixels;
     let (width, height) = (right.abs_diff(left), top.abs_diff(bottom));
     if width > MAX_SIDE || height > MAX_SIDE {
-        return Err(Error::LimitExceeded(format!("a bitmap of {width}×{height} pixels at {ppem} ppem")));
+        return Err(Error::BitmapTooLarge { width, height, limit: MAX_SIDE });
     }
     Ok(Placement { left, top, width, height })
 }
 
 /// The largest integer that is not above `v`; f32's own is slow where the instruction is not in the baseline.
-pub(super) fn floor(v: f32) -> i32 {
+pub fn floor(v: f32) -> i32 {
     let whole = v as i32;
     whole.saturating_sub(i32::from(whole as f32 > v))
 }

@@ -3,13 +3,15 @@
 pub mod compose;
 pub mod contour;
 pub mod gridfit;
+#[cfg(feature = "networks")]
 pub mod network;
+mod root;
 
-use std::fmt;
-use std::str::FromStr;
+use core::fmt;
 
 /// What the teacher hinted for, which the model therefore reproduces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[non_exhaustive]
 pub enum Target {
     /// Hinting in y for grey antialiasing (FreeType's `FT_LOAD_TARGET_NORMAL`).
     #[default]
@@ -29,21 +31,15 @@ impl Target {
             Self::Lcd => "lcd",
         }
     }
+
+    /// The target of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Smooth, Self::Mono, Self::Lcd].into_iter().find(|target| target.name() == name)
+    }
 }
 
 impl fmt::Display for Target {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
-    }
-}
-
-impl FromStr for Target {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        [Self::Smooth, Self::Mono, Self::Lcd]
-            .into_iter()
-            .find(|target| target.name() == name)
-            .ok_or_else(|| format!("unknown target {name:?}; use smooth, mono or lcd"))
     }
 }

@@ -4,10 +4,12 @@
 //! Both are noted where it passes, as changes from a pixel to the one below; sums down the columns are the coverage.
 //! An upright side has no width and costs nothing.
 
+use alloc::vec::Vec;
+
 use wide::{i16x8, i32x8, u8x16};
 
 /// Units in a pixel along each axis.
-pub const UNIT: i32 = 1 << SHIFT;
+pub(super) const UNIT: i32 = 1 << SHIFT;
 const SHIFT: i32 = 9;
 const MASK: i32 = UNIT - 1;
 /// What a pixel that is covered in full sums up to.
@@ -45,6 +47,11 @@ impl Area {
         if self.blocks.len() < len {
             self.blocks.resize(len, Block::default());
         }
+    }
+
+    /// The most steps that polygons with so many vertices take: each side may cross all rows and columns.
+    pub(super) fn most_steps(&self, vertices: usize) -> u64 {
+        vertices as u64 * (self.width as u64 + self.height as u64)
     }
 
     /// Adds a polygon, given by its vertices' places along x and y, in units from the upper left corner, y down, with
@@ -223,7 +230,7 @@ pub(super) fn rounded(v: f32) -> i32 {
 /// Adds a row of blocks to the sums, leaves zeros, and writes what they stand for.
 fn levels(blocks: &mut [Block], sums: &mut [i32x8], pixels: &mut [u8]) {
     for ((block, sum), pixels) in blocks.iter_mut().zip(sums).zip(pixels.chunks_mut(LANES)) {
-        let Block { cover, area } = std::mem::take(block);
+        let Block { cover, area } = core::mem::take(block);
         *sum += i32x8::new(cover);
         let levels = block_levels((*sum << (SHIFT + 1)) - i32x8::new(area));
         match <&mut [u8; LANES]>::try_from(&mut *pixels) {
@@ -241,7 +248,7 @@ fn block_levels(sums: i32x8) -> [u8; LANES] {
     let shares = shares.max(i16x8::ZERO).min(i16x8::splat((FULL >> 5) as i16));
     let levels: i16x8 = (shares - (shares >> 8) + i16x8::splat(32)) >> 6;
     let levels = u8x16::narrow_i16x8(levels, levels).to_array();
-    std::array::from_fn(|k| levels[k])
+    core::array::from_fn(|k| levels[k])
 }
 
 #[cfg(test)]

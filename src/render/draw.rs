@@ -1,10 +1,13 @@
 //! Drawing models: their outlines are put where hinting puts them at a size, and filled.
 
+use alloc::vec::Vec;
+
 use wide::f32x8;
 
 use super::Placement;
 use super::area::{Area, UNIT, rounded};
-use super::glyph::buffer_for;
+use super::bitmap::Canvas;
+use super::limits::Budget;
 use crate::error::Error;
 use crate::model::contour::{LANES, Polygons, Tracer};
 use crate::model::gridfit::{GridFit, MAX_KNOTS, check_ppem, placement_of};
@@ -28,92 +31,163 @@ pub struct Scratch {
 impl GridFit {
     /// Draws the pixels of `placement` at a size: those of the model's own placement, or more around them. `pixels`
     /// has `placement.area()` bytes, top row first.
-    pub fn draw(&self, ppem: f32, placement: Placement, scratch: &mut Scratch, pixels: &mut [u8]) {
-        draw(&std::iter::once((self, [0.0; 2])), ppem, placement, scratch, pixels);
+    ///
+    /// # Errors
+    ///
+    /// As [`GridFit::placement`], and `BufferTooSmall` for a placement that does not hold the model's own, or fewer
+    /// pixels than it has.
+    pub fn draw(
+        &self,
+        ppem: f32,
+        placement: Placement,
+        scratch: &mut Scratch,
+        pixels: &mut [u8],
+    ) -> Result<(), Error> {
+        let (own, pitch) = (self.placement(ppem)?, placement.width as usize);
+        if own.area() > 0 && super::union(own, placement) != placement {
+            return Err(Error::BufferTooSmall { placement: own, pitch, length: pixels.len() });
+        }
+        let mut canvas = Canvas::new(placement, pixels, pitch)?;
+        let models = core::iter::once((self, [0.0; 2]));
+        draw(&models, ppem, placement, scratch, &mut canvas, &mut Budget::unlimited())
     }
 }
 
 /// Draws models, each at a place of its own (pixels), into one bitmap that has room for all of them: its pixels are
 /// what they cover together.
-pub fn draw<'a>(
+///
+/// # Errors
+///
+/// `TooMuchWork`.
+pub(super) fn draw<'a>(
     models: &(impl Iterator<Item = (&'a GridFit, [f32; 2])> + Clone),
     ppem: f32,
     placement: Placement,
     scratch: &mut Scratch,
-    pixels: &mut [u8],
-) {
-    draw_in_strips::<STRIP>(models, ppem, placement, scratch, pixels);
+    canvas: &mut Canvas<'_>,
+    budget: &mut Budget,
+) -> Result<(), Error> {
+    draw_in_strips::<STRIP>(models, ppem, placement, scratch, canvas, budget)
 }
 
-/// Draws in strips of columns, each of which has up to so many pixels, but one column at least.
 fn draw_in_strips<'a, const MOST: usize>(
     models: &(impl Iterator<Item = (&'a GridFit, [f32; 2])> + Clone),
     ppem: f32,
     placement: Placement,
     scratch: &mut Scratch,
-    pixels: &mut [u8],
-) {
-    let (width, height) = (placement.width as usize, placement.height as usize);
-    if width == 0 || height == 0 {
-        return;
-    }
-    let strip = (MOST / height).clamp(1, width);
-    for column in (0..width).step_by(strip) {
-        scratch.area.start(strip.min(width - column), height);
-        for (model, origin) in models.clone() {
-            if !model.is_empty() {
-                let corner = [placement.left + column as i32, placement.top];
-                if strip == width {
-                    add::<false>(model, ppem, origin, corner, scratch);
-                } else {
-                    add::<true>(model, ppem, origin, corner, scratch);
-                }
+    canvas: &mut Canvas<'_>,
+    budget: &mut Budget,
+) -> Result<(), Error> {
+    in_strips::<MOST>(placement, scratch, canvas, |strip, scratch| {
+        for (model, origin) in models.clone().filter(|(model, _)| !model.is_empty()) {
+            let [(left, _), (_, top)] = aim(model, ppem, origin, &mut scratch.warps);
+            let offset = [left.saturating_sub(strip.left), strip.top.saturating_sub(top)];
+            let offset = offset.map(|pixels| pixels.saturating_mul(UNIT));
+            if strip.is_whole {
+                fill::<false>(model, ppem, offset, scratch, budget)?;
+            } else {
+                fill::<true>(model, ppem, offset, scratch, budget)?;
             }
         }
-        scratch.area.finish(width, &mut pixels[column..]);
-    }
+        Ok(())
+    })
 }
 
-/// Draws one model at a place of its own (pixels) into the beginning of `pixels`.
+/// Draws closed polygons, given by their vertices in pixels from the bitmap's upper left corner, y down, and by where
+/// each of them ends in that list; the inside is on the left as seen with y up. All vertices lie within the bitmap.
 ///
 /// # Errors
 ///
-/// As [`GridFit::placement_at`], and `InvalidParameter` for a buffer that is too small.
-pub(super) fn draw_one(
-    model: &GridFit,
-    ppem: f32,
-    origin: [f32; 2],
+/// `TooMuchWork`.
+pub(super) fn draw_polygons(
+    vertices: &[[f32; 2]],
+    ends: &[usize],
+    placement: Placement,
     scratch: &mut Scratch,
-    pixels: &mut [u8],
-) -> Result<Placement, Error> {
-    if model.is_empty() {
-        return model.placement_at(ppem, origin);
-    }
-    check_ppem(ppem)?;
-    let own = aim(model, ppem, origin, &mut scratch.warps);
-    let placement = placement_of(own, ppem)?;
-    let pixels = buffer_for(placement, pixels)?;
-    if placement.area() > STRIP {
-        draw(&std::iter::once((model, origin)), ppem, placement, scratch, pixels);
-    } else {
-        scratch.area.start(placement.width as usize, placement.height as usize);
-        fill::<false>(model, ppem, [0; 2], scratch);
-        scratch.area.finish(placement.width as usize, pixels);
-    }
-    Ok(placement)
+    canvas: &mut Canvas<'_>,
+    budget: &mut Budget,
+) -> Result<(), Error> {
+    in_strips::<STRIP>(placement, scratch, canvas, |strip, scratch| {
+        let shift = (strip.left - placement.left) * UNIT;
+        let Scratch { points: [x, y], area, .. } = scratch;
+        x.clear();
+        y.clear();
+        x.extend(vertices.iter().map(|v| rounded(v[0] * UNIT as f32) - shift));
+        y.extend(vertices.iter().map(|v| rounded(v[1] * UNIT as f32)));
+        budget.spend(area.most_steps(vertices.len()))?;
+        let mut done = 0;
+        for &end in ends {
+            if strip.is_whole {
+                area.polygon::<false>(&x[done..end], &y[done..end]);
+            } else {
+                area.polygon::<true>(&x[done..end], &y[done..end]);
+            }
+            done = end;
+        }
+        Ok(())
+    })
 }
 
-/// Adds a model that stands at `origin` to a bitmap with its upper left corner at `corner`, both in pixels.
-fn add<const CLIP: bool>(
+/// Some columns of a bitmap.
+struct Strip {
+    /// The pixel in the upper left corner.
+    left: i32,
+    top: i32,
+    /// Whether these are all columns.
+    is_whole: bool,
+}
+
+/// Draws in strips of columns, each of which has up to so many pixels, but one column at least.
+fn in_strips<const MOST: usize>(
+    placement: Placement,
+    scratch: &mut Scratch,
+    canvas: &mut Canvas<'_>,
+    mut add: impl FnMut(&Strip, &mut Scratch) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let (width, height) = (placement.width as usize, placement.height as usize);
+    if width == 0 || height == 0 {
+        return Ok(());
+    }
+    let columns = (MOST / height).clamp(1, width);
+    for column in (0..width).step_by(columns) {
+        scratch.area.start(columns.min(width - column), height);
+        let left = placement.left.saturating_add(column as i32);
+        let strip = Strip { left, top: placement.top, is_whole: columns == width };
+        let added = add(&strip, scratch);
+        // Also after an error, so that nothing is left for the next bitmap.
+        scratch.area.finish(canvas.pitch, &mut canvas.pixels[column..]);
+        added?;
+    }
+    Ok(())
+}
+
+/// Draws one model at a place of its own (pixels) into the canvas that `room` gives for its placement, if it gives one.
+///
+/// # Errors
+///
+/// As [`GridFit::placement_at`] and `room`, and `TooMuchWork`.
+pub(super) fn draw_one<'b>(
     model: &GridFit,
     ppem: f32,
     origin: [f32; 2],
-    corner: [i32; 2],
     scratch: &mut Scratch,
-) {
-    let [(left, _), (_, top)] = aim(model, ppem, origin, &mut scratch.warps);
-    let offset = [left.saturating_sub(corner[0]), corner[1].saturating_sub(top)];
-    fill::<CLIP>(model, ppem, offset.map(|pixels| pixels.saturating_mul(UNIT)), scratch);
+    budget: &mut Budget,
+    room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+) -> Result<Option<Placement>, Error> {
+    check_ppem(ppem)?;
+    let own = aim(model, ppem, origin, &mut scratch.warps);
+    let placement = placement_of(own)?;
+    let Some(mut canvas) = room(placement)? else { return Ok(None) };
+    budget.spend(placement.area() as u64)?;
+    if placement.area() > STRIP {
+        draw(&core::iter::once((model, origin)), ppem, placement, scratch, &mut canvas, budget)?;
+    } else {
+        scratch.area.start(placement.width as usize, placement.height as usize);
+        let filled = fill::<false>(model, ppem, [0; 2], scratch, budget);
+        scratch.area.finish(canvas.pitch, canvas.pixels);
+        filled?;
+    }
+    Ok(Some(placement))
 }
 
 /// Sets the warps for a model that stands at `origin`. Returns its box: from which pixel to which, along each axis.
@@ -122,8 +196,19 @@ fn aim(model: &GridFit, ppem: f32, origin: [f32; 2], [across, along]: &mut [Warp
 }
 
 /// Adds the model that the warps are set for, whose box begins `offset` units after the bitmap.
-fn fill<const CLIP: bool>(model: &GridFit, ppem: f32, offset: [i32; 2], scratch: &mut Scratch) {
+///
+/// # Errors
+///
+/// `TooMuchWork`.
+fn fill<const CLIP: bool>(
+    model: &GridFit,
+    ppem: f32,
+    offset: [i32; 2],
+    scratch: &mut Scratch,
+    budget: &mut Budget,
+) -> Result<(), Error> {
     let polygons = model.polygons(ppem, &mut scratch.tracer, &mut scratch.fresh);
+    budget.spend(scratch.area.most_steps(polygons.at[0].len()))?;
     scratch.strengths.clear();
     let strengths = model.strengths(ppem).map(|pixels| pixels * UNIT as f32).enumerate();
     scratch.strengths.extend(strengths.filter(|(_, units)| *units != 0.0));
@@ -136,6 +221,7 @@ fn fill<const CLIP: bool>(model: &GridFit, ppem: f32, offset: [i32; 2], scratch:
         scratch.area.polygon::<CLIP>(&x[range.clone()], &y[range]);
         done = end;
     }
+    Ok(())
 }
 
 /// The warp of one axis at a size, from em to units from the corner of the model's own box.
@@ -206,7 +292,7 @@ impl Warp {
                     let [scale, shift] = self.pieces[usize::from(knots[k]).min(MAX_KNOTS)];
                     at[k] * scale + shift
                 };
-                f32x8::new(std::array::from_fn(place))
+                f32x8::new(core::array::from_fn(place))
             };
             for &(pattern, strength) in strengths {
                 if let Some(values) = patterns[pattern * stride + block * LANES..].first_chunk() {

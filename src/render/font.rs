@@ -1,43 +1,56 @@
-//! A font that carries models: looking glyphs up and decoding their models.
+//! A font that carries models: looking glyphs up, and metrics.
 
-use std::sync::Arc;
+use alloc::sync::Arc;
+use core::fmt;
+use core::ops::Range;
 
-use read_fonts::tables::{cmap::Cmap, hmtx::Hmtx};
-use read_fonts::types::Tag;
-use read_fonts::{FontRef, TableProvider};
+use read_fonts::model::Blob;
+use read_fonts::tables::cmap::PlatformId;
+use read_fonts::types::{GlyphId, Tag};
+use read_fonts::{FontRef, TableProvider, model};
 
-use super::Glyph;
+use super::LineMetrics;
 use crate::error::Error;
 use crate::model::Target;
-use crate::model::compose::Origin;
-use crate::model::gridfit::{GridFit, Scale};
-use crate::model::network::Network;
-use crate::table::{self, Header, PartsDecoder, Precision, Table};
+use crate::model::gridfit::Scale;
+use crate::table::{self, Header, Table};
 
-/// A font with an `Nfrt` table, borrowed from the file's bytes. Opening it reads headers only.
+/// A font with an `Nfrt` table. It shares the file's bytes: clones are cheap, and all of them are one font, which
+/// threads may use at the same time. Opening it takes the same time for any number of glyphs.
 #[derive(Clone)]
-pub struct Font<'a> {
-    font: FontRef<'a>,
-    cmap: Option<Cmap<'a>>,
-    hmtx: Option<Hmtx<'a>>,
-    table: Table<'a>,
+pub struct Font(Arc<Inner>);
+
+struct Inner {
+    font: model::Font,
+    data: Blob,
+    /// Where the `Nfrt` table is in the file.
+    table: Range<usize>,
+    header: Header,
     scale: Scale,
-    glyph_count: u16,
+    glyph_count: u32,
 }
 
-impl std::fmt::Debug for Font<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Font").field("table", &self.table).field("scale", &self.scale).finish_non_exhaustive()
+const _: () = {
+    const fn sendable<T: Clone + Send + Sync + 'static>() {}
+    sendable::<Font>();
+};
+
+impl fmt::Debug for Font {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Font")
+            .field("header", self.header())
+            .field("scale", &self.0.scale)
+            .finish_non_exhaustive()
     }
 }
 
-impl<'a> Font<'a> {
-    /// Opens the first font of a file's bytes.
+impl Font {
+    /// Opens the first font of a file's bytes: a `Vec<u8>`, a `&'static [u8]`, an `Arc<[u8]>`, a memory map.
     ///
     /// # Errors
     ///
     /// As [`Font::from_index`].
-    pub fn parse(data: &'a [u8]) -> Result<Self, Error> {
+    pub fn new(data: impl AsRef<[u8]> + Send + Sync + 'static) -> Result<Self, Error> {
         Self::from_index(data, 0)
     }
 
@@ -45,25 +58,26 @@ impl<'a> Font<'a> {
     ///
     /// # Errors
     ///
-    /// `Malformed` for bytes that are no font or contradict themselves, `Unsupported` for a font without an
-    /// `Nfrt` table or with one from the future, `InvalidParameter` for an index that is out of range.
-    pub fn from_index(data: &'a [u8], index: u32) -> Result<Self, Error> {
-        let font = open(data, index)?;
-        let bytes = font.table_data(table::TAG).ok_or_else(|| {
-            Error::Unsupported("the font has no 'Nfrt' table; make one with nfr-convert".into())
-        })?;
-        let table = Table::parse(bytes.as_bytes())?;
-        let scale = table.header().scale(head_units(&font)?);
-        let glyph_count = font
-            .maxp()
-            .map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e})")))?
-            .num_glyphs();
-        Ok(Self { cmap: font.cmap().ok(), hmtx: font.hmtx().ok(), font, table, scale, glyph_count })
+    /// `NotAFont`, `NoSuchFont`; `NotConverted` for a font without an `Nfrt` table; `MissingTable`, `MalformedTable`
+    /// or `UnitsPerEm` for a font whose header, metrics or character map cannot be read; `MalformedModels` or
+    /// `UnknownVersion`.
+    pub fn from_index(data: impl AsRef<[u8]> + Send + Sync + 'static, index: u32) -> Result<Self, Error> {
+        let data = Blob::Shared(Arc::new(data));
+        let file = open(&data, index)?;
+        let table = range(&file, &data, table::TAG)?.ok_or(Error::NotConverted)?;
+        let units_per_em = head_units(&file)?;
+        check_tables(&file, &data)?;
+        let glyph_count = file.maxp().map_err(|_| malformed(b"maxp"))?.num_glyphs().into();
+        let header = *Table::parse(&data[table.clone()])?.header();
+        // Table::parse has checked the sizes, head_units the units.
+        let scale = header.scale(units_per_em).ok_or(Error::UnitsPerEm(units_per_em))?;
+        let font = model::Font::new(data.clone(), index).ok_or(Error::NotAFont)?;
+        Ok(Self(Arc::new(Inner { font, data, table, header, scale, glyph_count })))
     }
 
-    /// What the conversion was asked for.
-    pub fn header(&self) -> &Header {
-        self.table.header()
+    /// The file's bytes, for a shaper or another renderer.
+    pub fn data(&self) -> &[u8] {
+        &self.0.data
     }
 
     /// What the models were trained for.
@@ -72,72 +86,68 @@ impl<'a> Font<'a> {
     }
 
     /// The models were trained on every whole size from the first to the last of these, in pixels per em; networks on
-    /// some of them, which [`Network::sizes`] has.
+    /// some of them.
     pub fn ppem_range(&self) -> (u16, u16) {
-        (self.scale.first_ppem, self.scale.last_ppem)
+        (self.0.scale.first_ppem(), self.0.scale.last_ppem())
+    }
+
+    /// The number of glyphs in the font, with a model or without.
+    pub fn glyph_count(&self) -> u32 {
+        self.0.glyph_count
+    }
+
+    /// The glyphs that have a model, ascending.
+    pub fn modelled_glyphs(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.table().map_or_else(|_| table::Gids::default(), |table| table.gids()).map(u32::from)
+    }
+
+    /// Whether a glyph has a model.
+    pub fn has_model(&self, glyph: u32) -> bool {
+        self.table().is_ok_and(|table| table.contains(glyph))
+    }
+
+    /// The bytes that a glyph's model takes in the table.
+    ///
+    /// # Errors
+    ///
+    /// `MissingModel` if it has none, `MalformedModel` if the table's entry is damaged.
+    pub fn model_len(&self, glyph: u32) -> Result<usize, Error> {
+        self.table()?.model_len(glyph)
     }
 
     /// The length of the `Nfrt` table in bytes.
     pub fn table_len(&self) -> usize {
-        self.table.table_len()
-    }
-
-    /// The bytes that a glyph's model or network takes in the table.
-    ///
-    /// # Errors
-    ///
-    /// `MissingGlyph` if it has none.
-    pub fn model_len(&self, gid: u16) -> Result<usize, Error> {
-        self.table.model_len(gid)
-    }
-
-    /// The number of glyphs in the font, with a model or without.
-    pub fn glyph_count(&self) -> u16 {
-        self.glyph_count
-    }
-
-    /// The glyphs that have a model or a network, ascending.
-    pub fn modelled_glyphs(&self) -> impl ExactSizeIterator<Item = u16> + use<'a> {
-        self.table.gids()
-    }
-
-    /// Whether a glyph has a model or a network.
-    pub fn has_model(&self, gid: u16) -> bool {
-        self.table.contains(gid)
-    }
-
-    /// The glyphs that have a network, ascending.
-    pub fn networks(&self) -> impl ExactSizeIterator<Item = u16> + use<'a> {
-        self.table.network_gids()
-    }
-
-    /// Whether a glyph is drawn by a network: only at sizes that it was trained for, with the pen on a whole pixel, and
-    /// a thousand times more slowly.
-    pub fn is_network(&self, gid: u16) -> bool {
-        self.table.is_network(gid)
-    }
-
-    /// How the weights of a glyph's network are stored.
-    ///
-    /// # Errors
-    ///
-    /// `MissingGlyph` if it has none, `Malformed` if its bytes are damaged.
-    pub fn precision(&self, gid: u16) -> Result<Precision, Error> {
-        self.table.precision(gid)
+        self.0.table.len()
     }
 
     /// The glyph that the font's character map gives for a character.
-    pub fn glyph_for_char(&self, character: char) -> Option<u16> {
-        u16::try_from(self.cmap.as_ref()?.map_codepoint(character)?.to_u32()).ok()
+    pub fn glyph_for_char(&self, character: char) -> Option<u32> {
+        self.0.font.charmap().map_unicode(character).map(GlyphId::to_u32)
+    }
+
+    /// The characters of the font's character map with their glyphs.
+    pub fn characters(&self) -> impl Iterator<Item = (char, u32)> + '_ {
+        let mappings = self.0.font.charmap().unicodes();
+        mappings.filter_map(|(code, glyph)| Some((char::from_u32(code)?, glyph.to_u32())))
+    }
+
+    /// Font units in an em.
+    pub fn units_per_em(&self) -> u16 {
+        self.0.scale.units_per_em()
     }
 
     /// The advance width in pixels, linear in the size; 0 for a glyph that the font does not have.
-    pub fn advance(&self, gid: u16, ppem: f32) -> f32 {
-        if gid >= self.glyph_count {
+    pub fn advance(&self, glyph: u32, ppem: f32) -> f32 {
+        if glyph >= self.0.glyph_count {
             return 0.0;
         }
-        let units = self.hmtx.as_ref().and_then(|hmtx| hmtx.advance(gid.into())).unwrap_or(0);
-        f32::from(units) * ppem / f32::from(self.scale.units_per_em)
+        let units = self.0.font.glyph_metrics().h_advance(GlyphId::new(glyph));
+        units * ppem / f32::from(self.0.scale.units_per_em())
+    }
+
+    /// Metrics of a line of text at a size in pixels per em.
+    pub fn line_metrics(&self, ppem: f32) -> LineMetrics {
+        LineMetrics::new(&self.0.font, ppem)
     }
 
     /// Whether the glyphs that have models have no outlines in this font.
@@ -151,87 +161,106 @@ impl<'a> Font<'a> {
         if self.outlines_dropped() {
             return true;
         }
-        let glyf = self.font.table_data(Tag::new(b"glyf"));
-        glyf.is_some_and(|glyf| {
-            table::outline_hash(self.scale.units_per_em, glyf.as_bytes()) == self.header().outline_hash
+        let glyf = self.0.font.tables().glyf();
+        glyf.is_ok_and(|glyf| {
+            table::outline_hash(self.units_per_em(), glyf.offset_data().as_bytes())
+                == self.header().outline_hash
         })
     }
+}
 
-    /// Decodes a glyph's model or network. To draw many glyphs, a [`Rasterizer`](super::Rasterizer) keeps what this
-    /// sets up and throws away.
-    ///
-    /// # Errors
-    ///
-    /// `MissingGlyph` if it has none, `Malformed` or `LimitExceeded` if its bytes are damaged.
-    pub fn glyph(&self, gid: u16) -> Result<Glyph, Error> {
-        self.glyph_with(&mut PartsDecoder::default(), gid, |_| None)
+impl Font {
+    /// What the conversion was asked for.
+    pub(crate) fn header(&self) -> &Header {
+        &self.0.header
     }
 
-    /// Decodes a glyph. Those in `known` are not decoded again as parts of others.
-    pub(super) fn glyph_with(
-        &self,
-        parts: &mut PartsDecoder,
-        gid: u16,
-        known: impl Fn(u16) -> Option<Arc<GridFit>>,
-    ) -> Result<Glyph, Error> {
-        let model = |gid| match known(gid) {
-            Some(model) => Ok(model),
-            None => {
-                let weights = self.table.weights(gid, self.scale)?;
-                GridFit::new(&weights, self.scale).map(Arc::new)
-            }
-        };
-        if self.table.is_network(gid) {
-            return Network::new(self.table.network(gid)?).map(Glyph::of_network);
-        }
-        if !self.table.is_composed(gid) {
-            return Ok(Glyph::of_model(model(gid)?, self.scale));
-        }
-        let placed = parts.parts(&self.table, gid, self.scale)?;
-        let placed = placed.iter().map(|part| Ok((model(part.gid)?, Origin::new(part, self.scale)?)));
-        Ok(Glyph::of_parts(placed.collect::<Result<_, Error>>()?))
+    /// The `Nfrt` table. It was read when the font was opened; this only finds its arrays again.
+    pub(crate) fn table(&self) -> Result<Table<'_>, Error> {
+        let bytes = self.0.data.get(self.0.table.clone()).ok_or(malformed(b"Nfrt"))?;
+        Table::parse(bytes)
     }
 
-    #[cfg(feature = "fallback")]
-    pub(super) fn outlines(&self) -> skrifa::outline::OutlineGlyphCollection<'a> {
-        skrifa::MetadataProvider::outline_glyphs(&self.font)
+    /// Units and sizes of all models.
+    pub(crate) fn scale(&self) -> Scale {
+        self.0.scale
+    }
+
+    pub(super) fn model(&self) -> &model::Font {
+        &self.0.font
     }
 }
 
 /// Opens one font of a file.
+///
+/// # Errors
+///
+/// `NotAFont`, `NoSuchFont`, or `MalformedTable` for a collection's font that cannot be read.
 pub fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
     match read_fonts::FileRef::new(data) {
-        Err(_) => Err(Error::Malformed(
-            "these bytes are no OpenType font; pass a .ttf file or a collection of them".into(),
-        )),
+        Err(_) => Err(Error::NotAFont),
         Ok(read_fonts::FileRef::Font(font)) if index == 0 => Ok(font),
-        Ok(read_fonts::FileRef::Font(_)) => Err(Error::InvalidParameter(format!(
-            "font index {index} in a file that holds one font; use index 0"
-        ))),
+        Ok(read_fonts::FileRef::Font(_)) => Err(Error::NoSuchFont { index, count: 1 }),
         Ok(read_fonts::FileRef::Collection(fonts)) => {
             if index >= fonts.len() {
-                return Err(Error::InvalidParameter(format!(
-                    "font index {index} in a collection of {} fonts; use 0–{}",
-                    fonts.len(),
-                    fonts.len().saturating_sub(1)
-                )));
+                return Err(Error::NoSuchFont { index, count: fonts.len() });
             }
-            fonts
-                .get(index)
-                .map_err(|e| Error::Malformed(format!("font {index} of the collection cannot be read ({e})")))
+            fonts.get(index).map_err(|_| malformed(b"ttcf"))
         }
     }
 }
 
 /// Font units in an em, checked.
+///
+/// # Errors
+///
+/// `MissingTable` or `MalformedTable` if they cannot be read, `UnitsPerEm` if they are not allowed.
 pub fn head_units(font: &FontRef<'_>) -> Result<u16, Error> {
-    let head = font.head().map_err(|e| {
-        Error::Malformed(format!("table 'head' cannot be read ({e}); the file may be truncated"))
-    })?;
-    match head.units_per_em() {
+    match font.head().map_err(|_| unreadable(font, b"head"))?.units_per_em() {
         units @ 16..=16384 => Ok(units),
-        units => {
-            Err(Error::Malformed(format!("table 'head' claims {units} units per em, 16–16384 are allowed")))
-        }
+        units => Err(Error::UnitsPerEm(units)),
     }
+}
+
+fn malformed(tag: &[u8; 4]) -> Error {
+    Error::MalformedTable { tag: *tag }
+}
+
+/// The error for a table that is needed and cannot be read.
+fn unreadable(font: &FontRef<'_>, tag: &[u8; 4]) -> Error {
+    let listed = font.table_directory().table_records().iter().any(|record| record.tag() == Tag::new(tag));
+    if listed { malformed(tag) } else { Error::MissingTable { tag: *tag } }
+}
+
+/// Where a table is in the file; `None` if the font has none.
+fn range(font: &FontRef<'_>, data: &[u8], tag: Tag) -> Result<Option<Range<usize>>, Error> {
+    let records = font.table_directory().table_records();
+    let Some(record) = records.iter().find(|record| record.tag() == tag) else { return Ok(None) };
+    let start = record.offset() as usize;
+    let range = start..start.saturating_add(record.length() as usize);
+    if data.get(range.clone()).is_some() { Ok(Some(range)) } else { Err(malformed(&tag.to_be_bytes())) }
+}
+
+/// Checks what metrics and characters are read from, so that nothing is silently without width or characters later.
+fn check_tables(font: &FontRef<'_>, data: &[u8]) -> Result<(), Error> {
+    font.maxp().map_err(|_| unreadable(font, b"maxp"))?;
+    font.hhea().map_err(|_| unreadable(font, b"hhea"))?;
+    let hmtx = font.hmtx().map_err(|_| unreadable(font, b"hmtx"))?;
+    if hmtx.h_metrics().is_empty() {
+        return Err(malformed(b"hmtx"));
+    }
+    // A font without a character map can be drawn by its glyphs' numbers.
+    let Some(_) = range(font, data, Tag::new(b"cmap"))? else { return Ok(()) };
+    let cmap = font.cmap().map_err(|_| malformed(b"cmap"))?;
+    let unicode = cmap.encoding_records().iter().filter(|record| {
+        matches!(
+            (record.platform_id(), record.encoding_id()),
+            (PlatformId::Unicode, 0..=4 | 6) | (PlatformId::Windows, 0 | 1 | 10)
+        )
+    });
+    let mut readable = unicode.map(|record| record.subtable(cmap.offset_data()).is_ok()).peekable();
+    if readable.peek().is_some() && !readable.any(|is| is) {
+        return Err(malformed(b"cmap"));
+    }
+    Ok(())
 }

@@ -1,104 +1,85 @@
 //! A glyph that is ready to draw: one model, several at places of their own, or a network.
 
-use std::sync::Arc;
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
 
+use super::bitmap::Canvas;
 use super::draw::{Scratch, draw, draw_one};
-use super::{Bitmap, Placement, Setting};
+use super::limits::Budget;
+use super::{Bitmap, DrawOptions, Font, Limits, Placement, union};
 use crate::error::Error;
 use crate::model::compose::Origin;
-use crate::model::gridfit::{GridFit, MAX_SIDE, Scale};
+use crate::model::gridfit::GridFit;
+#[cfg(feature = "networks")]
 use crate::model::network::Network;
 
-/// One glyph, decoded and ready to draw: at any size, or, if it is a network, at those that it was trained for.
+/// One glyph, decoded and ready to draw.
 #[derive(Debug, Clone)]
-pub struct Glyph(Kind);
+pub struct Glyph {
+    glyph: u32,
+    limits: Limits,
+    drawn: Drawn,
+}
 
+/// What a glyph is drawn from.
 #[derive(Debug, Clone)]
-enum Kind {
+enum Drawn {
     Parts(Vec<(Arc<GridFit>, Origin)>),
+    #[cfg(feature = "networks")]
     Network(Arc<Network>),
 }
 
 impl Glyph {
-    /// A glyph that has a model of its own.
-    pub fn of_model(model: Arc<GridFit>, scale: Scale) -> Self {
-        Self(Kind::Parts(vec![(model, Origin::zero(scale))]))
+    /// A glyph that is put together from models, each at a place of its own, with the default limits.
+    pub fn of_models(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
+        Self { glyph: 0, limits: Limits::default(), drawn: Drawn::Parts(parts) }
     }
 
-    /// A glyph that is put together from others' models.
-    pub fn of_parts(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
-        Self(Kind::Parts(parts))
-    }
-
-    /// A glyph that a network draws.
+    /// A glyph that a network draws, with limits that fit any network.
+    #[cfg(feature = "networks")]
     pub fn of_network(network: Network) -> Self {
-        Self(Kind::Network(Arc::new(network)))
-    }
-
-    /// The network that draws the glyph, if one does.
-    pub fn network(&self) -> Option<&Network> {
-        match &self.0 {
-            Kind::Parts(_) => None,
-            Kind::Network(network) => Some(network),
-        }
+        let limits = Limits { decoded_bytes: usize::MAX, work: u64::MAX, ..Limits::default() };
+        Self { glyph: 0, limits, drawn: Drawn::Network(Arc::new(network)) }
     }
 
     /// The first part's model, to be shared with other glyphs.
     pub(super) fn model(&self) -> Option<Arc<GridFit>> {
-        match &self.0 {
-            Kind::Parts(parts) => parts.first().map(|(model, _)| model.clone()),
-            Kind::Network(_) => None,
+        match &self.drawn {
+            Drawn::Parts(parts) => parts.first().map(|(model, _)| model.clone()),
+            #[cfg(feature = "networks")]
+            Drawn::Network(_) => None,
         }
     }
 
-    /// Where the bitmap lies at a size in pixels per em, or at a [`Setting`].
+    /// The network that draws the glyph, if one does.
+    #[cfg(feature = "networks")]
+    pub fn network(&self) -> Option<&Network> {
+        match &self.drawn {
+            Drawn::Parts(_) => None,
+            Drawn::Network(network) => Some(network),
+        }
+    }
+
+    /// Where the bitmap lies.
     ///
     /// # Errors
     ///
-    /// `InvalidParameter` for a size that is not a positive number or a pen too far off, `LimitExceeded` for a
-    /// bitmap that would be too large, `Unsupported` for a size that the glyph's network was not trained for, or
-    /// a network with the pen between pixels.
-    pub fn placement(&self, setting: impl Into<Setting>) -> Result<Placement, Error> {
-        let setting = setting.into().checked()?;
-        let parts = match &self.0 {
-            Kind::Parts(parts) => parts,
-            Kind::Network(network) => return network.placement(setting),
+    /// `InvalidSize` or `InvalidOffset`, `BitmapTooLarge`; for a network `NetworkSize` or `NetworkOffset`.
+    pub fn placement(&self, options: impl Into<DrawOptions>) -> Result<Placement, Error> {
+        let options = options.into().checked()?;
+        let placement = match &self.drawn {
+            Drawn::Parts(parts) => {
+                let mut whole = Placement::default();
+                for (model, origin) in parts {
+                    whole = union(whole, model.placement_at(options.ppem, place(origin, options))?);
+                }
+                whole
+            }
+            #[cfg(feature = "networks")]
+            Drawn::Network(network) => network.placement(self.glyph, options)?,
         };
-        let mut whole = Placement::default();
-        for (model, origin) in parts {
-            whole = union(whole, model.placement_at(setting.ppem, place(origin, setting))?);
-        }
-        if whole.width > MAX_SIDE || whole.height > MAX_SIDE {
-            return Err(Error::LimitExceeded(format!(
-                "a bitmap of {}×{} pixels at {} ppem",
-                whole.width, whole.height, setting.ppem
-            )));
-        }
-        Ok(whole)
-    }
-
-    /// Draws coverage 0–255 into `pixels`, top row first, `placement.width` bytes a row. Bytes beyond the
-    /// bitmap are left alone. Once `scratch` has grown, nothing is allocated, but a network allocates each time.
-    ///
-    /// # Errors
-    ///
-    /// As `placement`, and `InvalidParameter` for a buffer that is too small.
-    pub fn render_into(
-        &self,
-        setting: impl Into<Setting>,
-        scratch: &mut Scratch,
-        pixels: &mut [u8],
-    ) -> Result<Placement, Error> {
-        let setting = setting.into();
-        if let Kind::Parts(parts) = &self.0
-            && let [(model, origin)] = parts.as_slice()
-        {
-            let setting = setting.checked()?;
-            return draw_one(model, setting.ppem, place(origin, setting), scratch, pixels);
-        }
-        let placement = self.placement(setting)?;
-        let pixels = buffer_for(placement, pixels)?;
-        self.draw(setting, placement, scratch, pixels)?;
+        self.limits.check_sides(placement.width, placement.height)?;
         Ok(placement)
     }
 
@@ -106,89 +87,188 @@ impl Glyph {
     ///
     /// # Errors
     ///
-    /// As `placement`.
-    pub fn render(&self, setting: impl Into<Setting>) -> Result<Bitmap, Error> {
-        let setting = setting.into();
-        let placement = self.placement(setting)?;
-        let mut pixels = vec![0; placement.area()];
-        self.draw(setting, placement, &mut Scratch::default(), &mut pixels)?;
+    /// As `placement`, and `TooMuchWork`.
+    pub fn render(&self, options: impl Into<DrawOptions>) -> Result<Bitmap, Error> {
+        self.render_with(options, &mut Scratch::default())
+    }
+
+    /// Draws into a new bitmap, with working memory that drawing reuses.
+    ///
+    /// # Errors
+    ///
+    /// As `render`.
+    pub fn render_with(
+        &self,
+        options: impl Into<DrawOptions>,
+        scratch: &mut Scratch,
+    ) -> Result<Bitmap, Error> {
+        let mut pixels = Vec::new();
+        let placement = self.draw(options.into(), scratch, fresh(&mut pixels))?.unwrap_or_default();
         Ok(Bitmap { placement, pixels })
     }
 
-    fn draw(
+    /// Draws coverage 0–255 into the canvas that `room` gives for the bitmap's placement; if it gives none, nothing is
+    /// drawn, and `None` is returned.
+    pub(super) fn draw<'b>(
         &self,
-        setting: Setting,
-        placement: Placement,
+        options: DrawOptions,
         scratch: &mut Scratch,
-        pixels: &mut [u8],
-    ) -> Result<(), Error> {
-        match &self.0 {
-            Kind::Parts(parts) => {
-                let parts = parts.iter().map(|(model, origin)| (&**model, place(origin, setting)));
-                draw(&parts, setting.ppem, placement, scratch, pixels);
-                Ok(())
-            }
-            Kind::Network(network) => network.draw(setting.ppem, pixels),
+        room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+    ) -> Result<Option<Placement>, Error> {
+        let options = options.checked()?;
+        let room = |placement: Placement| {
+            self.limits.check_sides(placement.width, placement.height)?;
+            room(placement)
+        };
+        let mut budget = Budget::new(self.glyph, &self.limits);
+        match &self.drawn {
+            Drawn::Parts(parts) => self.draw_parts(parts, options, scratch, &mut budget, room),
+            #[cfg(feature = "networks")]
+            Drawn::Network(network) => network.draw(self.glyph, options, &mut budget, room),
         }
+    }
+
+    fn draw_parts<'b>(
+        &self,
+        parts: &[(Arc<GridFit>, Origin)],
+        options: DrawOptions,
+        scratch: &mut Scratch,
+        budget: &mut Budget,
+        room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+    ) -> Result<Option<Placement>, Error> {
+        if let [(model, origin)] = parts
+            && !model.is_empty()
+        {
+            return draw_one(model, options.ppem, place(origin, options), scratch, budget, room);
+        }
+        let placement = self.placement(options)?;
+        let Some(mut canvas) = room(placement)? else { return Ok(None) };
+        budget.spend(placement.area() as u64)?;
+        let parts = parts.iter().map(|(model, origin)| (&**model, place(origin, options)));
+        draw(&parts, options.ppem, placement, scratch, &mut canvas, budget)?;
+        Ok(Some(placement))
     }
 
     /// The memory that the models or the network take, in bytes. A model that several glyphs share counts in each of
     /// them.
     pub fn memory(&self) -> usize {
-        match &self.0 {
-            Kind::Parts(parts) => parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum(),
-            Kind::Network(network) => network.memory(),
+        match &self.drawn {
+            Drawn::Parts(parts) => parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum(),
+            #[cfg(feature = "networks")]
+            Drawn::Network(network) => network.memory(),
         }
     }
 }
 
-/// Where a part stands, from the pixel that the pen is given from.
-fn place(origin: &Origin, setting: Setting) -> [f32; 2] {
-    let at = origin.at(setting.ppem);
-    [0, 1].map(|axis| at[axis] + setting.pen[axis])
-}
-
-/// The box around two bitmaps; one without pixels takes no room.
-pub fn union(a: Placement, b: Placement) -> Placement {
-    match (a.area(), b.area()) {
-        (0, _) => return b,
-        (_, 0) => return a,
-        _ => {}
-    }
-    let right = |p: Placement| i64::from(p.left) + i64::from(p.width);
-    let bottom = |p: Placement| i64::from(p.top) - i64::from(p.height);
-    let (left, top) = (a.left.min(b.left), a.top.max(b.top));
-    let length = |length: i64| u32::try_from(length).unwrap_or(u32::MAX);
-    Placement {
-        left,
-        top,
-        width: length(right(a).max(right(b)) - i64::from(left)),
-        height: length(i64::from(top) - bottom(a).min(bottom(b))),
+/// Room for a bitmap in an empty vector.
+pub(super) fn fresh<'b>(
+    pixels: &'b mut Vec<u8>,
+) -> impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error> {
+    move |placement| {
+        *pixels = vec![0; placement.area()];
+        Canvas::new(placement, pixels, placement.width as usize).map(Some)
     }
 }
 
-/// The part of a caller's buffer that a bitmap takes.
-pub(super) fn buffer_for(placement: Placement, pixels: &mut [u8]) -> Result<&mut [u8], Error> {
-    let have = pixels.len();
-    pixels.get_mut(..placement.area()).ok_or_else(|| {
-        Error::InvalidParameter(format!(
-            "a buffer of {have} bytes for a bitmap of {}×{}; ask for the placement first",
-            placement.width, placement.height
-        ))
-    })
+/// Where a part stands, in pixels.
+fn place(origin: &Origin, options: DrawOptions) -> [f32; 2] {
+    let at = origin.at(options.ppem);
+    [0, 1].map(|axis| at[axis] + options.offset[axis])
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Decodes a font's glyphs, and keeps what composed glyphs share.
+#[derive(Debug)]
+pub struct Decoder {
+    font: Font,
+    limits: Limits,
+    /// The places of the parts of all composed glyphs; unpacked when the first of these is decoded.
+    places: Option<Vec<i8>>,
+}
 
-    const A: Placement = Placement { left: -1, top: 2, width: 2, height: 2 };
-    const B: Placement = Placement { left: 0, top: 3, width: 2, height: 2 };
+impl Decoder {
+    /// A decoder for a font's glyphs.
+    pub fn new(font: &Font, limits: Limits) -> Self {
+        Self { font: font.clone(), limits, places: None }
+    }
 
-    #[test]
-    fn the_union_holds_both_boxes_and_ignores_empty_ones() {
-        let empty = Placement { left: 50, top: 50, ..Placement::default() };
-        assert_eq!(union(A, B), Placement { left: -1, top: 3, width: 3, height: 3 });
-        assert_eq!((union(A, empty), union(empty, B)), (A, B));
+    /// The font whose glyphs are decoded.
+    pub fn font(&self) -> &Font {
+        &self.font
+    }
+
+    pub(super) fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    pub(super) fn set_limits(&mut self, limits: Limits) {
+        self.limits = limits;
+    }
+
+    /// Decodes a glyph.
+    ///
+    /// # Errors
+    ///
+    /// `NoSuchGlyph`, `MissingModel`; `MalformedModel` or `ModelTooLarge` if its bytes are damaged, `DecodedTooLarge`,
+    /// `NetworksNotBuilt`.
+    pub fn glyph(&mut self, glyph: u32) -> Result<Glyph, Error> {
+        self.glyph_with(glyph, |_| None)
+    }
+
+    /// Decodes a glyph. Those in `known` are not decoded again as parts of others.
+    pub(super) fn glyph_with(
+        &mut self,
+        glyph: u32,
+        known: impl Fn(u32) -> Option<Arc<GridFit>>,
+    ) -> Result<Glyph, Error> {
+        if glyph >= self.font.glyph_count() {
+            return Err(Error::NoSuchGlyph(glyph));
+        }
+        let (table, scale, limits) = (self.font.table()?, self.font.scale(), self.limits);
+        table.check_glyph(glyph)?;
+        let model = |part: u32| match known(part) {
+            Some(model) => Ok(model),
+            None => {
+                let weights = table.weights(part, scale, limits.decoded_bytes)?;
+                GridFit::new(&weights, scale).map(Arc::new).map_err(|damage| damage.of(part))
+            }
+        };
+        let drawn = if table.is_network(glyph) {
+            self::network(&table, glyph, &limits)?
+        } else if table.is_composed(glyph) {
+            let places = match self.places.take() {
+                Some(places) => places,
+                None => table.places(glyph, scale, limits.decoded_bytes)?,
+            };
+            let parts = table.parts(glyph, scale, &places);
+            self.places = Some(places);
+            let placed = parts?.into_iter().map(|part| {
+                let origin = Origin::new(&part, scale).map_err(|damage| damage.of(glyph))?;
+                Ok((model(part.gid.into())?, origin))
+            });
+            Drawn::Parts(placed.collect::<Result<_, Error>>()?)
+        } else {
+            Drawn::Parts(vec![(model(glyph)?, Origin::zero(scale))])
+        };
+        let decoded = Glyph { glyph, limits, drawn };
+        limits.check_decoded(glyph, decoded.memory())?;
+        Ok(decoded)
+    }
+}
+
+#[cfg(feature = "networks")]
+fn network(table: &crate::table::Table<'_>, glyph: u32, limits: &Limits) -> Result<Drawn, Error> {
+    let weights = table.network(glyph, limits.decoded_bytes)?;
+    Network::new(weights).map(|network| Drawn::Network(Arc::new(network))).map_err(|damage| damage.of(glyph))
+}
+
+#[cfg(not(feature = "networks"))]
+fn network(_: &crate::table::Table<'_>, glyph: u32, _: &Limits) -> Result<Drawn, Error> {
+    Err(Error::NetworksNotBuilt(glyph))
+}
+
+impl Font {
+    /// Decodes a glyph, with the default limits.
+    pub(crate) fn decode(&self, glyph: u32) -> Result<Glyph, Error> {
+        Decoder::new(self, Limits::default()).glyph(glyph)
     }
 }

@@ -1,114 +1,201 @@
 //! Drawing many glyphs: decoded models are kept in a cache whose size the caller sets.
 
+use alloc::vec::Vec;
+
+use super::bitmap::Canvas;
 use super::draw::Scratch;
-#[cfg(feature = "fallback")]
-use super::glyph::buffer_for;
-use super::{Bitmap, Font, Glyph, Placement, Setting};
+use super::glyph::{Decoder, fresh};
+use super::outline::draw_outline;
+use super::{Bitmap, BitmapRef, DrawOptions, Font, Glyph, Limits, MissingModel, Placement};
 use crate::error::Error;
-use crate::table::PartsDecoder;
 
 /// Decoded models take up to this many bytes unless the caller says otherwise: about 700 glyphs.
 const DEFAULT_CACHE: usize = 8 << 20;
 
-/// Draws a font's glyphs. A glyph that a network draws is there at the network's sizes only. With the feature
-/// `fallback`, a glyph that has no model is drawn from its unhinted outline; without it, such a glyph is
-/// [`Error::MissingGlyph`].
-pub struct Rasterizer<'a> {
-    font: Font<'a>,
-    parts: PartsDecoder,
+/// Draws a font's glyphs, one thread at a time. Decoded models are kept, and working memory is reused: a glyph that is in
+/// the cache is drawn without allocating.
+///
+/// All ways of drawing give the same pixels. Their errors are the same, too: `NoSuchGlyph` for a glyph that the font does
+/// not have, `MissingModel` for one without a model (see [`Self::with_missing_model`]), `MalformedModel` or
+/// `ModelTooLarge` for a damaged one, `InvalidSize` or `InvalidOffset` for [`DrawOptions`] out of range, `BitmapTooLarge`,
+/// `DecodedTooLarge` or `TooMuchWork` for what is beyond the [`Limits`], and for glyphs that a network draws
+/// `NetworksNotBuilt`, `NetworkSize` and `NetworkOffset`.
+#[derive(Debug)]
+pub struct Rasterizer {
+    decoder: Decoder,
+    missing: MissingModel,
     cache: Cache,
     scratch: Scratch,
+    /// The bitmap that [`Self::draw`] lends.
+    pixels: Vec<u8>,
 }
 
-impl<'a> Rasterizer<'a> {
-    /// A rasterizer with a cache of 8 MiB.
-    pub fn new(font: &Font<'a>) -> Self {
-        Self::with_cache(font, DEFAULT_CACHE)
+const _: () = {
+    const fn sendable<T: Send + Sync + 'static>() {}
+    sendable::<Rasterizer>();
+};
+
+impl Rasterizer {
+    /// A rasterizer with a cache of 8 MiB and the default limits. A glyph without a model is an error.
+    pub fn new(font: &Font) -> Self {
+        Self {
+            decoder: Decoder::new(font, Limits::default()),
+            missing: MissingModel::default(),
+            cache: Cache { limit: DEFAULT_CACHE, ..Cache::default() },
+            scratch: Scratch::default(),
+            pixels: Vec::new(),
+        }
     }
 
-    /// A rasterizer that keeps decoded models of at most `bytes` bytes, and always at least the last one.
-    pub fn with_cache(font: &Font<'a>, bytes: usize) -> Self {
-        let cache = Cache { limit: bytes, ..Cache::default() };
-        Self { parts: PartsDecoder::default(), font: font.clone(), cache, scratch: Scratch::default() }
+    /// Keeps decoded models of at most `bytes` bytes, and always at least the last one.
+    #[must_use]
+    pub fn with_cache(mut self, bytes: usize) -> Self {
+        self.cache = Cache { limit: bytes, ..Cache::default() };
+        self
+    }
+
+    /// Sets what drawing a glyph may take.
+    #[must_use]
+    pub fn with_limits(mut self, limits: Limits) -> Self {
+        self.decoder.set_limits(limits);
+        // What is decoded already was held to other limits.
+        self.cache = Cache { limit: self.cache.limit, ..Cache::default() };
+        self
+    }
+
+    /// Chooses what is drawn for a glyph that the font has, but no model of.
+    #[must_use]
+    pub fn with_missing_model(mut self, missing: MissingModel) -> Self {
+        self.missing = missing;
+        self
     }
 
     /// The font that is drawn.
-    pub fn font(&self) -> &Font<'a> {
-        &self.font
+    pub fn font(&self) -> &Font {
+        self.decoder.font()
     }
 
-    /// Where a glyph's bitmap lies at a size in pixels per em, or at a [`Setting`].
+    /// Where a glyph's bitmap lies.
     ///
     /// # Errors
     ///
-    /// `MissingGlyph` for a glyph without a model (with `fallback`: for one that the font does not have),
-    /// `Malformed` for a damaged one, `InvalidParameter` for a size that is not a positive number or a pen too far
-    /// off, `LimitExceeded` for a bitmap that would be too large, `Unsupported` for a size that the glyph's network
-    /// was not trained for, or a network with the pen between pixels.
-    pub fn placement(&mut self, gid: u16, setting: impl Into<Setting>) -> Result<Placement, Error> {
-        let setting = setting.into();
-        #[cfg(feature = "fallback")]
-        if !self.font.has_model(gid) {
-            return self.outline(gid, setting).map(|bitmap| bitmap.placement);
-        }
-        self.cache.get(&self.font, &mut self.parts, gid)?.placement(setting)
+    /// As [`Rasterizer`] lists them, but for `TooMuchWork`.
+    pub fn placement(&mut self, glyph: u32, options: impl Into<DrawOptions>) -> Result<Placement, Error> {
+        let mut placement = Placement::default();
+        self.draw_with(glyph, options.into(), |place| {
+            placement = place;
+            Ok(None)
+        })?;
+        Ok(placement)
     }
 
-    /// Draws a glyph's coverage, 0–255, into `pixels`: top row first, `placement.width` bytes a row. Bytes
-    /// beyond the bitmap are left alone. A glyph that is in the cache is drawn without allocating, unless it is a
-    /// network: the largest that a table can hold takes 70 MB and a dozen seconds for a bitmap of 128 pixels.
+    /// Draws a glyph into a buffer of the rasterizer's own, and lends it until the next drawing.
     ///
     /// # Errors
     ///
-    /// As `placement`, and `InvalidParameter` for a buffer that is too small.
-    pub fn render_into(
-        &mut self,
-        gid: u16,
-        setting: impl Into<Setting>,
-        pixels: &mut [u8],
-    ) -> Result<Placement, Error> {
-        let setting = setting.into();
-        #[cfg(feature = "fallback")]
-        if !self.font.has_model(gid) {
-            let bitmap = self.outline(gid, setting)?;
-            buffer_for(bitmap.placement, pixels)?.copy_from_slice(&bitmap.pixels);
-            return Ok(bitmap.placement);
-        }
-        let glyph = self.cache.get(&self.font, &mut self.parts, gid)?;
-        glyph.render_into(setting, &mut self.scratch, pixels)
+    /// As [`Rasterizer`] lists them.
+    pub fn draw(&mut self, glyph: u32, options: impl Into<DrawOptions>) -> Result<BitmapRef<'_>, Error> {
+        let mut pixels = core::mem::take(&mut self.pixels);
+        let drawn = self.draw_with(glyph, options.into(), |placement| {
+            if pixels.len() < placement.area() {
+                pixels.resize(placement.area(), 0);
+            }
+            Canvas::new(placement, &mut pixels, placement.width as usize).map(Some)
+        });
+        self.pixels = pixels;
+        let placement = drawn?.unwrap_or_default();
+        Ok(BitmapRef::new(placement, &self.pixels[..placement.area()]))
     }
 
     /// Draws a glyph into a new bitmap.
     ///
     /// # Errors
     ///
-    /// As `placement`.
-    pub fn render(&mut self, gid: u16, setting: impl Into<Setting>) -> Result<Bitmap, Error> {
-        let setting = setting.into();
-        let placement = self.placement(gid, setting)?;
-        let mut pixels = vec![0; placement.area()];
-        self.render_into(gid, setting, &mut pixels)?;
+    /// As [`Rasterizer`] lists them.
+    pub fn render(&mut self, glyph: u32, options: impl Into<DrawOptions>) -> Result<Bitmap, Error> {
+        let mut pixels = Vec::new();
+        let placement = self.draw_with(glyph, options.into(), fresh(&mut pixels))?.unwrap_or_default();
         Ok(Bitmap { placement, pixels })
     }
 
-    #[cfg(feature = "fallback")]
-    fn outline(&self, gid: u16, setting: Setting) -> Result<Bitmap, Error> {
-        use skrifa::instance::{LocationRef, Size};
-        use skrifa::outline::DrawSettings;
-        let Setting { ppem, pen } = setting.checked()?;
-        let outlines = self.font.outlines();
-        let glyph = outlines.get(skrifa::GlyphId::from(gid)).ok_or(Error::MissingGlyph(gid))?;
-        let mut outline = super::outline::Outline::default();
-        glyph
-            .draw(DrawSettings::unhinted(Size::new(ppem), LocationRef::default()), &mut outline)
-            .map_err(|e| Error::Malformed(format!("the outline of glyph {gid} cannot be drawn ({e})")))?;
-        outline.translate(pen);
-        Ok(outline.rasterize())
+    /// Draws a glyph's coverage, 0–255, into `pixels`: top row first, rows `pitch` bytes apart. Bytes beside and behind
+    /// the bitmap are left alone.
+    ///
+    /// # Errors
+    ///
+    /// As [`Rasterizer`] lists them, and `BufferTooSmall`, which tells the placement; nothing is drawn then. Where the
+    /// buffer is still to be found, as in an atlas, [`Self::render_with`] needs one call only.
+    pub fn render_into(
+        &mut self,
+        glyph: u32,
+        options: impl Into<DrawOptions>,
+        pixels: &mut [u8],
+        pitch: usize,
+    ) -> Result<Placement, Error> {
+        self.render_with(glyph, options, |_| Some((pixels, pitch))).map(Option::unwrap_or_default)
+    }
+
+    /// Draws a glyph into the buffer that `room` gives for its placement, whose rows are so many bytes apart. If `room`
+    /// gives none, nothing is drawn and `None` is returned.
+    ///
+    /// ```
+    /// # let font = nfr::Font::new(include_bytes!("../../spec/vectors/sans.ttf").as_slice())?;
+    /// let mut rasterizer = nfr::Rasterizer::new(&font);
+    /// let (mut atlas, width) = (vec![0; 256 * 64], 256);
+    /// let mut pen = 0;
+    /// for character in "nfr".chars().filter_map(|c| font.glyph_for_char(c)) {
+    ///     let placed = rasterizer.render_with(character, 24.0, |placement| {
+    ///         let from = pen;
+    ///         pen += placement.width as usize + 1;
+    ///         (pen <= width).then(|| (&mut atlas[from..], width))
+    ///     })?;
+    ///     assert!(placed.is_some(), "the atlas is full");
+    /// }
+    /// # Ok::<(), nfr::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Rasterizer`] lists them, and `BufferTooSmall`.
+    pub fn render_with<'b>(
+        &mut self,
+        glyph: u32,
+        options: impl Into<DrawOptions>,
+        room: impl FnOnce(Placement) -> Option<(&'b mut [u8], usize)>,
+    ) -> Result<Option<Placement>, Error> {
+        self.draw_with(glyph, options.into(), |placement| {
+            let Some((pixels, pitch)) = room(placement) else { return Ok(None) };
+            Canvas::new(placement, pixels, pitch).map(Some)
+        })
+    }
+
+    fn draw_with<'b>(
+        &mut self,
+        glyph: u32,
+        options: DrawOptions,
+        room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+    ) -> Result<Option<Placement>, Error> {
+        match self.cache.get(&mut self.decoder, glyph) {
+            Ok(decoded) => decoded.draw(options, &mut self.scratch, room),
+            Err(error @ Error::MissingModel(missing)) if missing == glyph => match self.missing {
+                MissingModel::Error => Err(error),
+                MissingModel::Blank => {
+                    options.checked()?;
+                    room(Placement::default())?;
+                    Ok(Some(Placement::default()))
+                }
+                MissingModel::Outline => {
+                    let (font, limits) = (self.decoder.font(), self.decoder.limits());
+                    draw_outline(font, glyph, options, limits, &mut self.scratch, room)
+                }
+            },
+            Err(error) => Err(error),
+        }
     }
 }
 
 /// Decoded models, the least recently used of which make room.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Cache {
     limit: usize,
     bytes: usize,
@@ -118,42 +205,42 @@ struct Cache {
     entries: Vec<Entry>,
 }
 
+#[derive(Debug)]
 struct Entry {
-    gid: u16,
+    glyph: u32,
     /// When it was last asked for.
     used: u64,
-    glyph: Glyph,
+    decoded: Glyph,
 }
 
 impl Cache {
-    fn get(&mut self, font: &Font<'_>, parts: &mut PartsDecoder, gid: u16) -> Result<&Glyph, Error> {
+    fn get(&mut self, decoder: &mut Decoder, glyph: u32) -> Result<&Glyph, Error> {
         self.clock += 1;
-        let at = match self.find(gid) {
+        let at = match self.find(glyph) {
             Some(at) => at,
-            None => self.load(font, parts, gid)?,
+            None => self.load(decoder, glyph)?,
         };
-        let entry = self.entries.get_mut(at).ok_or(Error::MissingGlyph(gid))?;
+        let entry = self.entries.get_mut(at).ok_or(Error::NoSuchGlyph(glyph))?;
         entry.used = self.clock;
-        Ok(&entry.glyph)
+        Ok(&entry.decoded)
     }
 
-    fn find(&self, gid: u16) -> Option<usize> {
-        (*self.places.get(usize::from(gid))? as usize).checked_sub(1)
+    fn find(&self, glyph: u32) -> Option<usize> {
+        (*self.places.get(glyph as usize)? as usize).checked_sub(1)
     }
 
-    fn load(&mut self, font: &Font<'_>, parts: &mut PartsDecoder, gid: u16) -> Result<usize, Error> {
-        let known = |gid| self.entries[self.find(gid)?].glyph.model();
-        let glyph = font.glyph_with(parts, gid, known)?;
-        let bytes = glyph.memory();
+    fn load(&mut self, decoder: &mut Decoder, glyph: u32) -> Result<usize, Error> {
+        let decoded = decoder.glyph_with(glyph, |part| self.entries[self.find(part)?].decoded.model())?;
+        let bytes = decoded.memory();
         while self.bytes + bytes > self.limit && !self.entries.is_empty() {
             self.evict();
         }
         self.bytes += bytes;
-        self.entries.push(Entry { gid, used: self.clock, glyph });
-        if self.places.len() <= usize::from(gid) {
-            self.places.resize(usize::from(gid) + 1, 0);
+        self.entries.push(Entry { glyph, used: self.clock, decoded });
+        if self.places.len() <= glyph as usize {
+            self.places.resize(glyph as usize + 1, 0);
         }
-        self.places[usize::from(gid)] = self.entries.len() as u32;
+        self.places[glyph as usize] = self.entries.len() as u32;
         Ok(self.entries.len() - 1)
     }
 
@@ -161,10 +248,10 @@ impl Cache {
         let ages = self.entries.iter().enumerate();
         let Some((oldest, _)) = ages.min_by_key(|(_, entry)| entry.used) else { return };
         let entry = self.entries.swap_remove(oldest);
-        self.bytes -= entry.glyph.memory();
-        self.places[usize::from(entry.gid)] = 0;
+        self.bytes -= entry.decoded.memory();
+        self.places[entry.glyph as usize] = 0;
         if let Some(moved) = self.entries.get(oldest) {
-            self.places[usize::from(moved.gid)] = oldest as u32 + 1;
+            self.places[moved.glyph as usize] = oldest as u32 + 1;
         }
     }
 }

@@ -3,6 +3,9 @@
 //! Writing and reading are the same functions: a coder that writes is given the weights, one that reads fills them
 //! in. `spec/nfrt.md` describes the order.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::contexts::{
     CLIPPED, COEFFICIENT, COUNT, EMBEDDING, INK, LEAST, Model, PATTERN, PLACE, UNITS, class,
 };
@@ -10,7 +13,7 @@ use super::priors::PRIOR;
 use super::range::Encoder;
 use super::range::{Coder, Decoder, End};
 use super::warp;
-use crate::error::Error;
+use crate::error::Damage;
 use crate::model::gridfit::{DEFORM_NODES, FIELD_LIMIT, FIELD_STEPS, PADDING, Scale, Weights};
 
 /// The most cells of a field along an axis.
@@ -33,15 +36,26 @@ const _: () = assert!(CLIP == -92 && BORDER == 600);
 /// The parts of a coded model, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Section {
+    /// Counts, knots and the box.
     Header,
+    /// Hinted positions.
     Warp,
+    /// The field's coefficients.
     Field,
+    /// The deformation's patterns.
     Patterns,
+    /// The weights of the patterns at each size.
     Embedding,
 }
 
-fn damaged(what: &str) -> Error {
-    Error::Malformed(format!("a glyph's model {what}; convert the font again"))
+fn damaged(what: &'static str) -> Damage {
+    Damage::Malformed(what)
+}
+
+/// More of something than the format allows. What cannot be counted, as it is below 0, counts as 0.
+fn too_large(what: &'static str, count: i32, limit: i32) -> Damage {
+    let [count, limit] = [count, limit].map(|number| u64::try_from(number).unwrap_or(0));
+    Damage::TooLarge { what, count, limit }
 }
 
 /// Whether a model is larger than readers accept.
@@ -52,29 +66,74 @@ pub fn exceeds_limits(weights: &Weights) -> bool {
         || weights.rank > MAX_RANK
 }
 
-/// Turns weights into bytes. Their lengths fit each other and the limits of this module.
-pub fn encode(weights: &Weights, scale: Scale) -> Vec<u8> {
+/// Turns weights into bytes.
+///
+/// # Errors
+///
+/// As [`decode`], for weights that it would refuse.
+pub fn encode(weights: &Weights, scale: Scale) -> Result<Vec<u8>, Damage> {
     let mut model = Model::new(Encoder::new(), &PRIOR);
-    // A coder that writes finds nothing wrong with weights within the limits.
-    let _ = code(&mut model, &mut weights.clone(), scale, |_, _| ());
-    model.coder.finish()
+    code(&mut model, &mut weights.clone(), scale, |_, _| ())?;
+    Ok(model.coder.finish())
+}
+
+/// Why [`decode_within`] gives no weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Failure {
+    /// The bytes are damaged.
+    Damage(Damage),
+    /// The weights would take so many bytes.
+    Memory(usize),
+}
+
+impl From<Damage> for Failure {
+    fn from(damage: Damage) -> Self {
+        Self::Damage(damage)
+    }
 }
 
 /// Reads weights back.
 ///
 /// # Errors
 ///
-/// `Malformed` for bytes that end early or contradict themselves, `LimitExceeded` for a model that is larger
-/// than any converter makes.
-pub fn decode(bytes: &[u8], scale: Scale) -> Result<Weights, Error> {
+/// `Malformed` for bytes that end early or contradict themselves, `TooLarge` for a model that is larger than the format
+/// allows.
+pub fn decode(bytes: &[u8], scale: Scale) -> Result<Weights, Damage> {
+    decode_within(bytes, scale, usize::MAX).map_err(|failure| match failure {
+        Failure::Damage(damage) => damage,
+        Failure::Memory(_) => damaged("is larger than memory"),
+    })
+}
+
+/// Reads weights back if they take up to `limit` bytes as [`GridFit`](crate::model::gridfit::GridFit) keeps them. Of
+/// larger ones, only the header is read.
+///
+/// # Errors
+///
+/// As [`decode`], and `Memory`.
+pub fn decode_within(bytes: &[u8], scale: Scale, limit: usize) -> Result<Weights, Failure> {
     let mut model = Model::new(Decoder::new(bytes), &PRIOR);
     let mut weights = Weights::default();
-    code(&mut model, &mut weights, scale, |_, _| ())?;
-    finish(model.coder, damaged)?;
+    header(&mut model, &mut weights, scale)?;
+    let memory = memory(&weights, scale);
+    if memory > limit {
+        return Err(Failure::Memory(memory));
+    }
+    body(&mut model, &mut weights, scale, |_, _| ())?;
+    finish(model.coder)?;
     Ok(weights)
 }
 
-fn finish(coder: Decoder<'_>, damaged: impl Fn(&str) -> Error) -> Result<(), Error> {
+/// The bytes that weights with such a header take as floating-point numbers.
+fn memory(weights: &Weights, scale: Scale) -> usize {
+    let coefficients = weights.cells.iter().map(|cells| usize::from(*cells) + 2).product::<usize>();
+    let knots = weights.warp_x.knots.len() + weights.warp_y.knots.len();
+    let rank = usize::from(weights.rank);
+    let patterns = rank * DEFORM_NODES * DEFORM_NODES;
+    (coefficients + patterns + (knots + rank) * scale.sizes()) * size_of::<f32>()
+}
+
+fn finish(coder: Decoder<'_>) -> Result<(), Damage> {
     coder.finish().map_err(|end| match end {
         End::Early => damaged("ends early"),
         End::Late => damaged("has bytes left over"),
@@ -82,19 +141,37 @@ fn finish(coder: Decoder<'_>, damaged: impl Fn(&str) -> Error) -> Result<(), Err
 }
 
 /// Refuses to go on behind the end.
-pub fn check<C: Coder>(coder: &C) -> Result<(), Error> {
+///
+/// # Errors
+///
+/// `Malformed` if the coder is behind the end.
+pub fn check<C: Coder>(coder: &C) -> Result<(), Damage> {
     if coder.is_spent() { Err(damaged("ends early")) } else { Ok(()) }
 }
 
 /// Codes a glyph's weights; calls `after` behind each section.
+///
+/// # Errors
+///
+/// As [`decode`].
 pub fn code<C: Coder>(
     model: &mut Model<'_, C>,
     weights: &mut Weights,
     scale: Scale,
     mut after: impl FnMut(Section, &mut C),
-) -> Result<(), Error> {
+) -> Result<(), Damage> {
     header(model, weights, scale)?;
     after(Section::Header, &mut model.coder);
+    body(model, weights, scale, after)
+}
+
+/// Codes what follows the header.
+fn body<C: Coder>(
+    model: &mut Model<'_, C>,
+    weights: &mut Weights,
+    scale: Scale,
+    mut after: impl FnMut(Section, &mut C),
+) -> Result<(), Damage> {
     if weights.cells == [0, 0] {
         return Ok(());
     }
@@ -112,7 +189,7 @@ pub fn code<C: Coder>(
 }
 
 /// Counts, knots and the box.
-fn header<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: Scale) -> Result<(), Error> {
+fn header<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: Scale) -> Result<(), Damage> {
     let inked = model.flag(INK, [0; 3], !weights.field.is_empty());
     if inked {
         let counts = [weights.warp_x.knots.len(), weights.warp_y.knots.len(), usize::from(weights.rank)];
@@ -122,11 +199,11 @@ fn header<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: Scal
             model.signed(COUNT, [at - 1, 0, 0], count as i32)
         });
         let limits = [MAX_KNOTS, MAX_KNOTS, MAX_RANK].map(i32::from);
-        if counts.iter().zip(limits).any(|(count, limit)| !(0..=limit).contains(count)) {
-            return Err(Error::LimitExceeded(format!(
-                "a glyph's model has {}+{} knots and rank {}",
-                counts[0], counts[1], counts[2]
-            )));
+        for ((count, limit), what) in counts.iter().zip(limits).zip(["knots in x", "knots in y", "patterns"])
+        {
+            if !(0..=limit).contains(count) {
+                return Err(too_large(what, *count, limit));
+            }
         }
         weights.rank = counts[2] as u8;
         knots(model, &mut weights.warp_x.knots, counts[0] as usize)?;
@@ -138,18 +215,18 @@ fn header<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: Scal
     }
     for (axis, cells) in weights.cells.iter_mut().enumerate() {
         let span = i64::from(weights.bounds[axis + 2]) - i64::from(weights.bounds[axis]);
-        let usual = ((span * 10_000 / i64::from(scale.units_per_em) + BORDER) / USUAL_CELL)
+        let usual = ((span * 10_000 / i64::from(scale.units_per_em()) + BORDER) / USUAL_CELL)
             .clamp(1, i64::from(MAX_CELLS)) as i32;
         let coded = model.signed(COUNT, [3 + axis, 0, 0], i32::from(*cells) - usual).wrapping_add(usual);
         if !(1..=i32::from(MAX_CELLS)).contains(&coded) {
-            return Err(Error::LimitExceeded(format!("a glyph's model has {coded} cells along an axis")));
+            return Err(too_large("cells along an axis", coded, MAX_CELLS.into()));
         }
         *cells = coded as u8;
     }
     check(&model.coder)
 }
 
-fn knots<C: Coder>(model: &mut Model<'_, C>, knots: &mut Vec<i16>, count: usize) -> Result<(), Error> {
+fn knots<C: Coder>(model: &mut Model<'_, C>, knots: &mut Vec<i16>, count: usize) -> Result<(), Damage> {
     knots.resize(count, 0);
     let mut before = 0;
     for (k, knot) in knots.iter_mut().enumerate() {
@@ -164,7 +241,7 @@ fn knots<C: Coder>(model: &mut Model<'_, C>, knots: &mut Vec<i16>, count: usize)
 }
 
 /// The box, against the outermost knots or, in an axis without any, its lower edge.
-fn bounds<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Error> {
+fn bounds<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Damage> {
     let Weights { bounds, warp_x, warp_y, .. } = weights;
     for (axis, warp) in [warp_x, warp_y].into_iter().enumerate() {
         let ends = warp.knots.first().zip(warp.knots.last());
@@ -190,7 +267,7 @@ fn edge(at: usize, count: usize) -> usize {
     }
 }
 
-fn field<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Error> {
+fn field<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Damage> {
     let [width, height] = weights.cells.map(|cells| usize::from(cells) + 2);
     weights.field.resize(width * height, 0);
     // With a border to the left, to the right and below.
@@ -247,7 +324,7 @@ fn size(value: i32) -> usize {
     class(value.abs(), [1, 3, 6, 12])
 }
 
-fn patterns<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Error> {
+fn patterns<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result<(), Damage> {
     const N: usize = DEFORM_NODES;
     let patterns = &mut weights.patterns;
     patterns.resize(usize::from(weights.rank) * N * N, 0);
@@ -274,7 +351,7 @@ fn patterns<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights) -> Result
     Ok(())
 }
 
-fn embedding<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: Scale) -> Result<(), Error> {
+fn embedding<C: Coder>(model: &mut Model<'_, C>, weights: &mut Weights, scale: Scale) -> Result<(), Damage> {
     let (rank, sizes) = (usize::from(weights.rank), scale.sizes());
     let jumps = warp::jumps(&weights.warp_y, scale);
     let embedding = &mut weights.embedding;
@@ -312,8 +389,11 @@ pub fn encode_places(lists: &[&[i8]]) -> Vec<u8> {
 }
 
 /// Reads `count` lists of places back, one after the other.
-pub fn decode_places(bytes: &[u8], count: usize, sizes: usize) -> Result<Vec<i8>, Error> {
-    let damaged = |what: &str| Error::Malformed(format!("the list of places {what}; convert the font again"));
+///
+/// # Errors
+///
+/// `Malformed` for bytes that end early or late.
+pub fn decode_places(bytes: &[u8], count: usize, sizes: usize) -> Result<Vec<i8>, Damage> {
     let mut model = Model::new(Decoder::new(bytes), &PRIOR);
     let mut lists = vec![0; count * sizes];
     for list in lists.chunks_exact_mut(sizes) {
@@ -322,7 +402,7 @@ pub fn decode_places(bytes: &[u8], count: usize, sizes: usize) -> Result<Vec<i8>
         }
         places(&mut model, list);
     }
-    finish(model.coder, damaged)?;
+    finish(model.coder)?;
     Ok(lists)
 }
 

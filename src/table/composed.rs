@@ -3,19 +3,22 @@
 //! Parts refer to models by their position in the table, so that a part can be nothing but a glyph with a model
 //! of its own.
 
+use alloc::vec::Vec;
+
 use read_fonts::FontData;
 use read_fonts::types::BigEndian;
 
 use super::MAX_PARTS;
+use super::reader::{find, outside};
 use crate::error::Error;
 use crate::model::compose::Part;
 
 /// The 16-bit numbers of a part: model, offset in x and y, places in x and y.
-pub(super) const PART_NUMBERS: usize = 5;
+pub const PART_NUMBERS: usize = 5;
 /// Stands for no places: the part does not snap.
-pub(super) const NO_SNAPS: u16 = u16::MAX;
+pub const NO_SNAPS: u16 = u16::MAX;
 /// How many composed glyphs, parts and lists of places there are, and the length of those lists, packed.
-pub(super) const COUNTS_AT: usize = 40;
+pub const COUNTS_AT: usize = 40;
 
 /// The composed glyphs of a table.
 #[derive(Debug, Clone, Copy)]
@@ -28,31 +31,31 @@ pub(super) struct ComposedGlyphs<'a> {
     snaps: &'a [u8],
 }
 
-fn truncated() -> Error {
-    Error::Malformed("the composed glyphs of table 'Nfrt' lie outside it; convert the font again".into())
+fn truncated(offset: usize) -> Error {
+    Error::MalformedModels { what: "ends before its composed glyphs", offset }
 }
 
 impl<'a> ComposedGlyphs<'a> {
     /// Finds the arrays, which begin at `at`. Says where they end, too.
     pub(super) fn parse(data: FontData<'a>, at: usize) -> Result<(Self, usize), Error> {
-        let u16_at = |at| data.read_at::<u16>(at).map_err(|_| truncated());
-        let u32_at = |at| data.read_at::<u32>(at).map_err(|_| truncated());
+        let u16_at = |at| data.read_at::<u16>(at).map_err(|_| truncated(at));
+        let u32_at = |at| data.read_at::<u32>(at).map_err(|_| truncated(at));
         let count = usize::from(u16_at(COUNTS_AT)?);
         let snap_count = u16_at(COUNTS_AT + 2)?;
         let (part_count, snap_bytes) = (u32_at(COUNTS_AT + 4)? as usize, u32_at(COUNTS_AT + 8)? as usize);
         let after = |at: usize, count: usize, size: usize| {
-            count.checked_mul(size).and_then(|length| at.checked_add(length)).ok_or_else(truncated)
+            count.checked_mul(size).and_then(|length| at.checked_add(length)).ok_or_else(|| truncated(at))
         };
         let ends_at = after(at, count, 2)?;
         let parts_at = after(ends_at, count, 4)?;
         let snaps_at = after(parts_at, part_count, 2 * PART_NUMBERS)?;
         let end = after(snaps_at, snap_bytes, 1)?;
         let composed = Self {
-            gids: data.read_array(at..ends_at).map_err(|_| truncated())?,
-            ends: data.read_array(ends_at..parts_at).map_err(|_| truncated())?,
-            parts: data.read_array(parts_at..snaps_at).map_err(|_| truncated())?,
+            gids: data.read_array(at..ends_at).map_err(|_| truncated(at))?,
+            ends: data.read_array(ends_at..parts_at).map_err(|_| truncated(ends_at))?,
+            parts: data.read_array(parts_at..snaps_at).map_err(|_| truncated(parts_at))?,
             snap_count,
-            snaps: data.as_bytes().get(snaps_at..end).ok_or_else(truncated)?,
+            snaps: data.as_bytes().get(snaps_at..end).ok_or_else(|| truncated(snaps_at))?,
         };
         Ok((composed, end))
     }
@@ -70,26 +73,20 @@ impl<'a> ComposedGlyphs<'a> {
         self.snaps
     }
 
-    pub(super) fn find(&self, gid: u16) -> Option<usize> {
-        self.gids.binary_search_by_key(&gid, |g| g.get()).ok()
+    pub(super) fn find(&self, gid: u32) -> Option<usize> {
+        find(self.gids, gid)
     }
 
     /// The numbers of a glyph's parts.
     fn numbers(&self, index: usize) -> Result<&'a [BigEndian<u16>], Error> {
-        let gid = self.gids[index].get();
+        let gid = self.gids[index].get().into();
         let start = if index == 0 { 0 } else { self.ends[index - 1].get() as usize };
         let range = start.saturating_mul(PART_NUMBERS)
             ..(self.ends[index].get() as usize).saturating_mul(PART_NUMBERS);
-        let numbers = self.parts.get(range).ok_or_else(|| {
-            Error::Malformed(format!(
-                "the parts of glyph {gid} lie outside the table; convert the font again"
-            ))
-        })?;
+        let numbers = self.parts.get(range).ok_or(outside(gid))?;
         if numbers.len() > MAX_PARTS * PART_NUMBERS {
-            let parts = numbers.len() / PART_NUMBERS;
-            return Err(Error::LimitExceeded(format!(
-                "glyph {gid} has {parts} parts, {MAX_PARTS} are allowed"
-            )));
+            let (count, limit) = ((numbers.len() / PART_NUMBERS) as u64, MAX_PARTS as u64);
+            return Err(Error::ModelTooLarge { glyph: gid, what: "parts", count, limit });
         }
         Ok(numbers)
     }
@@ -103,20 +100,21 @@ impl<'a> ComposedGlyphs<'a> {
     /// other, each of `sizes` values.
     pub(super) fn parts(
         &self,
-        gid: u16,
+        gid: u32,
         models: &[BigEndian<u16>],
         snaps: &[i8],
         sizes: usize,
     ) -> Result<Vec<Part>, Error> {
-        let numbers = self.numbers(self.find(gid).ok_or(Error::MissingGlyph(gid))?)?;
-        let dangling = |what: &str| {
-            Error::Malformed(format!("glyph {gid} has a part without {what}; convert the font again"))
-        };
+        let numbers = self.numbers(self.find(gid).ok_or(Error::MissingModel(gid))?)?;
+        let dangling = |what: &'static str| Error::MalformedModel { glyph: gid, what };
         let list = |at: u16| match at {
             NO_SNAPS => Ok(Vec::new()),
             at => {
                 let start = usize::from(at) * sizes;
-                snaps.get(start..start + sizes).map(<[i8]>::to_vec).ok_or_else(|| dangling("places"))
+                snaps
+                    .get(start..start + sizes)
+                    .map(<[i8]>::to_vec)
+                    .ok_or_else(|| dangling("has a part without places"))
             }
         };
         numbers
@@ -124,7 +122,10 @@ impl<'a> ComposedGlyphs<'a> {
             .map(|part| {
                 let number = |k: usize| part[k].get();
                 Ok(Part {
-                    gid: models.get(usize::from(number(0))).ok_or_else(|| dangling("a model"))?.get(),
+                    gid: models
+                        .get(usize::from(number(0)))
+                        .ok_or_else(|| dangling("has a part without a model"))?
+                        .get(),
                     offset: [number(1) as i16, number(2) as i16],
                     snaps: [list(number(3))?, list(number(4))?],
                 })

@@ -4,6 +4,8 @@
 //! questions is asked in up to three contexts; each context keeps its own odds, and the three are mixed. The
 //! odds that a glyph begins with, and the weights of the mixtures, are learnt from fonts and are the same for all.
 
+use alloc::vec::Vec;
+
 use super::priors::{Prior, STRETCH, squash};
 use super::range::{Coder, ONE};
 
@@ -92,12 +94,14 @@ const KINDS: ([Kind; SHAPES.len()], usize, usize) = {
 
 /// Codes numbers with a coder, and learns from them.
 pub struct Model<'p, C> {
+    /// What reads or writes the decisions.
     pub coder: C,
     prior: &'p Prior,
     slots: Vec<u16>,
 }
 
 impl<'p, C: Coder> Model<'p, C> {
+    /// A model that has seen nothing but its prior.
     pub fn new(coder: C, prior: &'p Prior) -> Self {
         Self { coder, prior, slots: prior.slots.to_vec() }
     }

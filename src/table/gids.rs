@@ -3,7 +3,7 @@
 use read_fonts::types::BigEndian;
 
 /// Ascending lists of glyphs, merged.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Gids<'a> {
     lists: [&'a [BigEndian<u16>]; 3],
 }

@@ -1,9 +1,8 @@
 //! The `Nfrt` table: layout, zero-copy reader, writer. `spec/nfrt.md` describes the bytes.
 
 pub mod codec;
-mod composed;
+pub mod composed;
 pub mod contexts;
-
 mod gids;
 pub mod network;
 mod networks;
@@ -11,12 +10,10 @@ pub mod priors;
 pub mod range;
 mod reader;
 mod warp;
-mod writer;
 
 pub use gids::Gids;
 pub use network::Precision;
-pub use reader::{PartsDecoder, Table};
-pub use writer::{GlyphModel, GlyphNetwork, write};
+pub use reader::Table;
 
 use crate::model::Target;
 use crate::model::gridfit::Scale;
@@ -43,8 +40,7 @@ pub const NETWORKS: u8 = 2;
 pub const MAX_PARTS: usize = 16;
 /// The places of parts that snap take no more than this, unpacked.
 pub const MAX_SNAP_BYTES: usize = 1 << 20;
-/// The largest trained size, in pixels per em.
-pub const MAX_TRAINED_PPEM: u16 = 1024;
+pub use crate::model::gridfit::MAX_TRAINED_PPEM;
 
 /// What a conversion was asked for, as the table records it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -72,9 +68,18 @@ pub struct Header {
 }
 
 impl Header {
-    /// The trained sizes as models know them.
-    pub fn scale(&self, units_per_em: u16) -> Scale {
-        Scale { units_per_em, first_ppem: self.first_ppem, last_ppem: self.last_ppem }
+    /// The number that stands for the target in the table.
+    pub fn target_number(&self) -> u8 {
+        match self.target {
+            Target::Smooth => 0,
+            Target::Mono => 1,
+            Target::Lcd => 2,
+        }
+    }
+
+    /// The trained sizes as models know them; `None` for units or sizes that the format does not allow.
+    pub fn scale(&self, units_per_em: u16) -> Option<Scale> {
+        Scale::new(units_per_em, self.first_ppem, self.last_ppem)
     }
 }
 

@@ -3,6 +3,7 @@
 use read_fonts::FontData;
 use read_fonts::types::BigEndian;
 
+use super::reader::{find, outside};
 use crate::error::Error;
 
 /// The networks of a table.
@@ -14,24 +15,24 @@ pub(super) struct Networks<'a> {
     payload: &'a [u8],
 }
 
-fn truncated() -> Error {
-    Error::Malformed("the networks of table 'Nfrt' lie outside it; convert the font again".into())
+fn truncated(offset: usize) -> Error {
+    Error::MalformedModels { what: "ends before its networks", offset }
 }
 
 impl<'a> Networks<'a> {
     /// Finds the arrays, which begin with their count at `at`.
     pub(super) fn parse(data: FontData<'a>, at: usize) -> Result<Self, Error> {
-        let count = usize::from(data.read_at::<u16>(at).map_err(|_| truncated())?);
-        let after = |at: usize, length: usize| at.checked_add(length).ok_or_else(truncated);
+        let count = usize::from(data.read_at::<u16>(at).map_err(|_| truncated(at))?);
+        let after = |at: usize, length: usize| at.checked_add(length).ok_or_else(|| truncated(at));
         let gids_at = after(at, 2)?;
         let ends_at = after(gids_at, 2 * count)?;
         let payload_at = after(ends_at, 4 * count)?;
-        let ends: &[BigEndian<u32>] = data.read_array(ends_at..payload_at).map_err(|_| truncated())?;
+        let ends: &[BigEndian<u32>] = data.read_array(ends_at..payload_at).map_err(|_| truncated(ends_at))?;
         let end = after(payload_at, ends.last().map_or(0, |end| end.get() as usize))?;
         Ok(Self {
-            gids: data.read_array(gids_at..ends_at).map_err(|_| truncated())?,
+            gids: data.read_array(gids_at..ends_at).map_err(|_| truncated(gids_at))?,
             ends,
-            payload: data.as_bytes().get(payload_at..end).ok_or_else(truncated)?,
+            payload: data.as_bytes().get(payload_at..end).ok_or_else(|| truncated(payload_at))?,
         })
     }
 
@@ -39,18 +40,15 @@ impl<'a> Networks<'a> {
         self.gids
     }
 
-    pub(super) fn find(&self, gid: u16) -> Option<usize> {
-        self.gids.binary_search_by_key(&gid, |g| g.get()).ok()
+    pub(super) fn find(&self, gid: u32) -> Option<usize> {
+        find(self.gids, gid)
     }
 
     /// A network's bytes.
     pub(super) fn packed(&self, index: usize) -> Result<&'a [u8], Error> {
         let start = if index == 0 { 0 } else { self.ends[index - 1].get() as usize };
-        self.payload.get(start..self.ends[index].get() as usize).ok_or_else(|| {
-            Error::Malformed(format!(
-                "the network of glyph {} lies outside the table; convert the font again",
-                self.gids[index].get()
-            ))
-        })
+        self.payload
+            .get(start..self.ends[index].get() as usize)
+            .ok_or_else(|| outside(self.gids[index].get().into()))
     }
 }

@@ -6,7 +6,9 @@ use super::range::ONE;
 /// The odds of each slot in 1/65536 and the weights of each mixture in 1/32.
 #[derive(Debug, Clone)]
 pub struct Prior {
+    /// The odds of each slot, in 1/65536.
     pub slots: [u16; SLOTS],
+    /// The weights of each mixture, in 1/32.
     pub weights: [[u8; 3]; MIXTURES],
 }
 

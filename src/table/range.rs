@@ -5,6 +5,8 @@
 //! 32 bits and brings five dependencies; a glyph is some hundreds of bytes, and the renderer's list of dependencies is
 //! to stay short.
 
+use alloc::vec::Vec;
+
 /// What a probability is a share of.
 pub const ONE: u32 = 1 << 12;
 
@@ -75,10 +77,13 @@ pub struct Encoder {
 }
 
 impl Encoder {
+    /// An encoder that has written nothing.
+    #[expect(clippy::new_without_default, reason = "an encoder is made to write, never as a placeholder")]
     pub fn new() -> Self {
         Self { interval: Interval::WHOLE, bytes: Vec::new() }
     }
 
+    /// The bytes of all decisions.
     pub fn finish(mut self) -> Vec<u8> {
         self.bytes.extend(self.interval.last());
         self.bytes
@@ -110,11 +115,14 @@ pub struct Decoder<'a> {
 /// How a message can fail to end where its bytes do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
+    /// The decisions need more bytes than there are.
     Early,
+    /// There are more bytes than the decisions need.
     Late,
 }
 
 impl<'a> Decoder<'a> {
+    /// A decoder at the beginning of a message.
     pub fn new(bytes: &'a [u8]) -> Self {
         let mut decoder = Self { interval: Interval::WHOLE, bytes, settled: 0, window: 0 };
         decoder.window = (0..4).fold(0, |window, at| window << 8 | decoder.byte(at));
@@ -126,12 +134,16 @@ impl<'a> Decoder<'a> {
     }
 
     /// Checks that the message ends where its bytes do.
+    ///
+    /// # Errors
+    ///
+    /// If the decisions do not end where the bytes do.
     pub fn finish(self) -> Result<(), End> {
         let length = self.settled + usize::from(self.interval.last().is_some());
         match length.cmp(&self.bytes.len()) {
-            std::cmp::Ordering::Greater => Err(End::Early),
-            std::cmp::Ordering::Equal => Ok(()),
-            std::cmp::Ordering::Less => Err(End::Late),
+            core::cmp::Ordering::Greater => Err(End::Early),
+            core::cmp::Ordering::Equal => Ok(()),
+            core::cmp::Ordering::Less => Err(End::Late),
         }
     }
 }
@@ -156,7 +168,7 @@ impl Coder for Decoder<'_> {
     }
 }
 
-#[cfg(all(test, feature = "convert"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;

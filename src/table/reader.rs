@@ -1,5 +1,7 @@
 //! Reading the table: nothing is copied until a glyph is asked for.
 
+use alloc::vec::Vec;
+
 use read_fonts::FontData;
 use read_fonts::types::BigEndian;
 
@@ -11,6 +13,7 @@ use crate::error::Error;
 use crate::model::Target;
 use crate::model::compose::Part;
 use crate::model::gridfit::{Scale, Weights};
+#[cfg(feature = "networks")]
 use crate::model::network::NetworkWeights;
 
 /// An `Nfrt` table, borrowed from the font's bytes.
@@ -28,8 +31,9 @@ pub struct Table<'a> {
     payload: &'a [u8],
 }
 
-fn truncated() -> Error {
-    Error::Malformed("table 'Nfrt' is shorter than it says; convert the font again".into())
+/// The table ends before what begins at `offset`.
+fn truncated(offset: usize) -> Error {
+    Error::MalformedModels { what: "ends early", offset }
 }
 
 impl<'a> Table<'a> {
@@ -37,24 +41,22 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     ///
-    /// `Malformed` for bytes that contradict themselves, `Unsupported` for a version from the future.
+    /// `MalformedModels` for bytes that contradict themselves, `UnknownVersion` for a version from the future.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, Error> {
         let data = FontData::new(bytes);
-        let u8_at = |at| data.read_at::<u8>(at).map_err(|_| truncated());
-        let u16_at = |at| data.read_at::<u16>(at).map_err(|_| truncated());
-        let u32_at = |at| data.read_at::<u32>(at).map_err(|_| truncated());
+        let u8_at = |at| data.read_at::<u8>(at).map_err(|_| truncated(at));
+        let u16_at = |at| data.read_at::<u16>(at).map_err(|_| truncated(at));
+        let u32_at = |at| data.read_at::<u32>(at).map_err(|_| truncated(at));
         let u64_at = |at| Ok::<u64, Error>(u64::from(u32_at(at)?) << 32 | u64::from(u32_at(at + 4)?));
         let major = u16_at(0)?;
         if major != MAJOR_VERSION {
-            return Err(Error::Unsupported(format!(
-                "table 'Nfrt' has version {major}, this program reads version {MAJOR_VERSION}; convert the font again"
-            )));
+            return Err(Error::UnknownVersion { major });
         }
         let target = match u8_at(4)? {
             0 => Target::Smooth,
             1 => Target::Mono,
             2 => Target::Lcd,
-            other => return Err(Error::Malformed(format!("table 'Nfrt' names an unknown target {other}"))),
+            _ => return Err(Error::MalformedModels { what: "names an unknown target", offset: 4 }),
         };
         let header = Header {
             target,
@@ -72,10 +74,7 @@ impl<'a> Table<'a> {
             || header.first_ppem > header.last_ppem
             || header.last_ppem > MAX_TRAINED_PPEM
         {
-            return Err(Error::Malformed(format!(
-                "table 'Nfrt' claims sizes {}–{} ppem; convert the font again",
-                header.first_ppem, header.last_ppem
-            )));
+            return Err(Error::MalformedModels { what: "claims impossible sizes", offset: 6 });
         }
         let count = usize::from(u16_at(10)?);
         let payload_len = u32_at(28)? as usize;
@@ -83,16 +82,16 @@ impl<'a> Table<'a> {
         let lengths_at = gids_at + 2 * count;
         let blocks_at = lengths_at + 2 * count;
         let payload_at = blocks_at + 4 * count.div_ceil(BLOCK);
-        let composed_at = payload_at.checked_add(payload_len).ok_or_else(truncated)?;
+        let composed_at = payload_at.checked_add(payload_len).ok_or_else(|| truncated(payload_at))?;
         let (composed, networks_at) = ComposedGlyphs::parse(data, composed_at)?;
         let has_networks = u8_at(5)? & NETWORKS != 0;
         let table = Self {
             header,
             len: bytes.len(),
-            gids: data.read_array(gids_at..lengths_at).map_err(|_| truncated())?,
-            lengths: data.read_array(lengths_at..blocks_at).map_err(|_| truncated())?,
-            blocks: data.read_array(blocks_at..payload_at).map_err(|_| truncated())?,
-            payload: bytes.get(payload_at..composed_at).ok_or_else(truncated)?,
+            gids: data.read_array(gids_at..lengths_at).map_err(|_| truncated(gids_at))?,
+            lengths: data.read_array(lengths_at..blocks_at).map_err(|_| truncated(lengths_at))?,
+            blocks: data.read_array(blocks_at..payload_at).map_err(|_| truncated(blocks_at))?,
+            payload: bytes.get(payload_at..composed_at).ok_or_else(|| truncated(payload_at))?,
             composed,
             networks: if has_networks { Networks::parse(data, networks_at)? } else { Networks::default() },
         };
@@ -120,45 +119,54 @@ impl<'a> Table<'a> {
     }
 
     /// Whether a glyph can be drawn.
-    pub fn contains(&self, gid: u16) -> bool {
+    pub fn contains(&self, gid: u32) -> bool {
         self.find(gid).is_some() || self.is_composed(gid) || self.is_network(gid)
     }
 
     /// Whether a glyph is put together from the models of others.
-    pub fn is_composed(&self, gid: u16) -> bool {
+    pub fn is_composed(&self, gid: u32) -> bool {
         self.composed.find(gid).is_some()
     }
 
     /// Whether a glyph has a network.
-    pub fn is_network(&self, gid: u16) -> bool {
+    pub fn is_network(&self, gid: u32) -> bool {
         self.networks.find(gid).is_some()
     }
 
-    fn find(&self, gid: u16) -> Option<usize> {
-        self.gids.binary_search_by_key(&gid, |g| g.get()).ok()
+    /// Checks that a glyph is drawn in one way only.
+    ///
+    /// # Errors
+    ///
+    /// `MissingModel` if the glyph is not in the table, `MalformedModel` if it is there in two ways.
+    pub fn check_glyph(&self, gid: u32) -> Result<(), Error> {
+        match [self.find(gid).is_some(), self.is_composed(gid), self.is_network(gid)].map(u8::from) {
+            [0, 0, 0] => Err(Error::MissingModel(gid)),
+            [1, 0, 0] | [0, 1, 0] | [0, 0, 1] => Ok(()),
+            _ => Err(Error::MalformedModel { glyph: gid, what: "is in the table twice" }),
+        }
+    }
+
+    fn find(&self, gid: u32) -> Option<usize> {
+        find(self.gids, gid)
     }
 
     /// A glyph's packed model.
-    fn packed(&self, gid: u16) -> Result<&'a [u8], Error> {
-        let index = self.find(gid).ok_or(Error::MissingGlyph(gid))?;
+    fn packed(&self, gid: u32) -> Result<&'a [u8], Error> {
+        let index = self.find(gid).ok_or(Error::MissingModel(gid))?;
         let block = index / BLOCK;
         let before: usize =
             self.lengths[block * BLOCK..index].iter().map(|length| usize::from(length.get())).sum();
         let start = (self.blocks[block].get() as usize).saturating_add(before);
         let end = start.saturating_add(self.lengths[index].get().into());
-        self.payload.get(start..end).ok_or_else(|| {
-            Error::Malformed(format!(
-                "the model of glyph {gid} lies outside the table; convert the font again"
-            ))
-        })
+        self.payload.get(start..end).ok_or(outside(gid))
     }
 
     /// The bytes that a glyph's packed model or its network takes, or the list of its parts.
     ///
     /// # Errors
     ///
-    /// `MissingGlyph`, or `Malformed` for an entry that points nowhere.
-    pub fn model_len(&self, gid: u16) -> Result<usize, Error> {
+    /// `MissingModel`, or `MalformedModel` for an entry that points nowhere.
+    pub fn model_len(&self, gid: u32) -> Result<usize, Error> {
         match (self.networks.find(gid), self.composed.find(gid)) {
             (Some(index), _) => self.networks.packed(index).map(<[u8]>::len),
             (None, Some(index)) => self.composed.len_of(index),
@@ -166,22 +174,62 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Unpacks one glyph's weights.
+    /// Unpacks one glyph's weights, which may take up to `limit` bytes.
     ///
     /// # Errors
     ///
-    /// `MissingGlyph` if the glyph has no model, `Malformed` or `LimitExceeded` if its bytes are damaged.
-    pub fn weights(&self, gid: u16, scale: Scale) -> Result<Weights, Error> {
-        codec::decode(self.packed(gid)?, scale)
+    /// `MissingModel` if the glyph has no model of its own, `MalformedModel` or `ModelTooLarge` if its bytes are
+    /// damaged, `DecodedTooLarge`.
+    pub fn weights(&self, gid: u32, scale: Scale, limit: usize) -> Result<Weights, Error> {
+        codec::decode_within(self.packed(gid)?, scale, limit).map_err(|failure| match failure {
+            codec::Failure::Damage(damage) => damage.of(gid),
+            codec::Failure::Memory(bytes) => Error::DecodedTooLarge { glyph: gid, bytes, limit },
+        })
+    }
+
+    /// Unpacks the lists of places that the parts of composed glyphs share, one after the other. `gid` is the glyph
+    /// that they are needed for.
+    ///
+    /// # Errors
+    ///
+    /// `MalformedModel` or `ModelTooLarge` if they are damaged, `DecodedTooLarge` if they take more than `limit` bytes.
+    pub fn places(&self, gid: u32, scale: Scale, limit: usize) -> Result<Vec<i8>, Error> {
+        let (count, sizes) = (self.composed.snap_count(), scale.sizes());
+        let bytes = count * sizes;
+        if bytes > MAX_SNAP_BYTES {
+            let (count, limit) = (bytes as u64, MAX_SNAP_BYTES as u64);
+            return Err(Error::ModelTooLarge { glyph: gid, what: "places of parts", count, limit });
+        }
+        if bytes > limit {
+            return Err(Error::DecodedTooLarge { glyph: gid, bytes, limit });
+        }
+        codec::decode_places(self.composed.packed_snaps(), count, sizes).map_err(|damage| damage.of(gid))
+    }
+
+    /// The parts of a composed glyph, each of which is a glyph that has a model of its own. `places` are those of this
+    /// table.
+    ///
+    /// # Errors
+    ///
+    /// `MissingModel` if the glyph is not composed, `MalformedModel` or `ModelTooLarge` if its bytes are damaged.
+    pub fn parts(&self, gid: u32, scale: Scale, places: &[i8]) -> Result<Vec<Part>, Error> {
+        self.composed.parts(gid, self.gids, places, scale.sizes())
     }
 
     /// A glyph's network.
     ///
     /// # Errors
     ///
-    /// `MissingGlyph` if the glyph has none, `Malformed` or `LimitExceeded` if its bytes are damaged.
-    pub fn network(&self, gid: u16) -> Result<NetworkWeights, Error> {
-        network::decode(self.packed_network(gid)?)
+    /// `MissingModel` if the glyph has none, `MalformedModel` or `ModelTooLarge` if its bytes are damaged,
+    /// `DecodedTooLarge` if it takes more than `limit` bytes.
+    #[cfg(feature = "networks")]
+    pub fn network(&self, gid: u32, limit: usize) -> Result<NetworkWeights, Error> {
+        let packed = self.packed_network(gid)?;
+        let bytes = network::Head::parse(packed).map_err(|damage| damage.of(gid))?.0.memory();
+        if bytes > limit {
+            return Err(Error::DecodedTooLarge { glyph: gid, bytes, limit });
+        }
+        network::decode(packed).map_err(|damage| damage.of(gid))
     }
 
     /// How the weights of a glyph's network are stored.
@@ -189,43 +237,21 @@ impl<'a> Table<'a> {
     /// # Errors
     ///
     /// As [`Self::network`].
-    pub fn precision(&self, gid: u16) -> Result<network::Precision, Error> {
-        network::precision(self.packed_network(gid)?)
+    pub fn precision(&self, gid: u32) -> Result<network::Precision, Error> {
+        network::precision(self.packed_network(gid)?).map_err(|damage| damage.of(gid))
     }
 
-    fn packed_network(&self, gid: u16) -> Result<&'a [u8], Error> {
-        self.networks.packed(self.networks.find(gid).ok_or(Error::MissingGlyph(gid))?)
+    fn packed_network(&self, gid: u32) -> Result<&'a [u8], Error> {
+        self.networks.packed(self.networks.find(gid).ok_or(Error::MissingModel(gid))?)
     }
 }
 
-/// Unpacks the parts of a table's composed glyphs.
-#[derive(Debug, Default)]
-pub struct PartsDecoder {
-    /// The places of parts that snap; unpacked when the first composed glyph is asked for.
-    snaps: Option<Vec<i8>>,
+/// Where a glyph is in an ascending list.
+pub(super) fn find(gids: &[BigEndian<u16>], gid: u32) -> Option<usize> {
+    gids.binary_search_by_key(&gid, |listed| listed.get().into()).ok()
 }
 
-impl PartsDecoder {
-    /// Unpacks the parts of a composed glyph. Each is a glyph that has a model of its own. The decoder belongs to
-    /// this table from then on.
-    ///
-    /// # Errors
-    ///
-    /// `MissingGlyph` if the glyph is not composed, `Malformed` or `LimitExceeded` if its bytes are damaged.
-    pub fn parts(&mut self, table: &Table<'_>, gid: u16, scale: Scale) -> Result<Vec<Part>, Error> {
-        let snaps = match self.snaps.take() {
-            Some(snaps) => snaps,
-            None => {
-                let (count, sizes) = (table.composed.snap_count(), scale.sizes());
-                if count * sizes > MAX_SNAP_BYTES {
-                    let most = count * sizes;
-                    return Err(Error::LimitExceeded(format!("table 'Nfrt' has {most} bytes of places")));
-                }
-                codec::decode_places(table.composed.packed_snaps(), count, sizes)?
-            }
-        };
-        let parts = table.composed.parts(gid, table.gids, &snaps, scale.sizes());
-        self.snaps = Some(snaps);
-        parts
-    }
+/// The bytes of a glyph lie outside the table.
+pub(super) fn outside(gid: u32) -> Error {
+    Error::MalformedModel { glyph: gid, what: "lies outside the table" }
 }

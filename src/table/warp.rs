@@ -1,10 +1,13 @@
 //! A warp's hinted positions: each knot is predicted from its plain position, from the sizes before and from the
 //! knots on both sides of it.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::codec;
 use super::contexts::{FRACTION, JUMP, Model, PREDICTOR, class};
 use super::range::Coder;
-use crate::error::Error;
+use crate::error::Damage;
 use crate::model::gridfit::{AxisWarp, Scale, WARP_STEPS};
 
 /// Hinted positions in a pixel, as a power of two.
@@ -67,7 +70,7 @@ fn off_pixel(position: i32) -> i32 {
 
 /// The plain positions of all knots, size by size.
 fn plain(knots: &[i16], scale: Scale) -> Vec<i32> {
-    let units = i64::from(scale.units_per_em);
+    let units = i64::from(scale.units_per_em());
     (0..scale.sizes())
         .flat_map(|s| {
             let steps = (scale.ppem_of(s) as i64) << PIXEL;
@@ -177,7 +180,7 @@ pub(super) fn code<C: Coder>(
     model: &mut Model<'_, C>,
     warp: &mut AxisWarp,
     scale: Scale,
-) -> Result<(), Error> {
+) -> Result<(), Damage> {
     let (count, sizes) = (warp.knots.len(), scale.sizes());
     warp.hinted.resize(count * sizes, 0);
     let plain = plain(&warp.knots, scale);

@@ -21,9 +21,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let bytes =
             font.table_data(TAG).ok_or_else(|| format!("{path} is not converted; use nfr-convert"))?;
         let table = Table::parse(bytes.as_bytes())?;
-        let scale = table.header().scale(font.head()?.units_per_em());
-        let own = table.gids().filter(|gid| !table.is_composed(*gid));
-        fonts.push((scale, own.map(|gid| table.weights(gid, scale)).collect::<Result<Vec<_>, _>>()?));
+        let scale = table.header().scale(font.head()?.units_per_em()).ok_or("impossible units per em")?;
+        let own = table.gids().map(u32::from).filter(|gid| !table.is_composed(*gid));
+        let weights = own.map(|gid| table.weights(gid, scale, usize::MAX));
+        fonts.push((scale, weights.collect::<Result<Vec<_>, _>>()?));
     }
     print!("{}", learn_priors(&fonts));
     Ok(())

@@ -144,8 +144,10 @@ fn components(font: &FontRef, gids: impl Iterator<Item = u16>) -> Result<BTreeSe
     let mut found = BTreeSet::new();
     let mut left: Vec<u16> = gids.collect();
     while let Some(gid) = left.pop() {
-        // What cannot be read has no components either.
-        if let Ok(Some(Glyph::Composite(glyph))) = loca.get_glyf(gid.into(), &glyf) {
+        let glyph = loca
+            .get_glyf(gid.into(), &glyf)
+            .map_err(|e| Error::Malformed(format!("glyph {gid} cannot be read ({e}); repair the font")))?;
+        if let Some(Glyph::Composite(glyph)) = glyph {
             let parts = glyph.components().filter_map(|part| u16::try_from(part.glyph.to_u32()).ok());
             left.extend(parts.filter(|part| found.insert(*part)));
         }

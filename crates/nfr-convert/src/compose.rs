@@ -17,8 +17,9 @@ use crate::error::Error;
 use crate::outline::Outline;
 use nfr::internals::model::compose::{Composed, Part, snapped, unsnapped};
 use nfr::internals::model::gridfit::Scale;
-use nfr::internals::render::{Bitmap, Placement, union};
 use nfr::internals::table::{MAX_PARTS, MAX_SNAP_BYTES};
+use nfr::internals::union;
+use nfr::{Bitmap, Placement};
 
 /// Hinted points may lie this far (pixels) from the part's, moved: a step of what models store.
 const MAX_POINT_ERROR: f32 = 1.0 / 32.0;
@@ -53,8 +54,8 @@ impl Plan {
     /// As the teacher's.
     pub(super) fn find(
         font: &FontRef<'_>,
-        teacher: &Teacher<'_>,
-        sizes: &[TeacherAt<'_, '_>],
+        teacher: &Teacher,
+        sizes: &[TeacherAt],
         scale: Scale,
         gids: &[u16],
     ) -> Result<Self, Error> {
@@ -77,7 +78,8 @@ impl Plan {
         }
         for (gid, leaves) in composites {
             let leaves: Vec<u16> = leaves.iter().map(|leaf| twins.original(*leaf)).collect();
-            if let Some(parts) = fitter.fit(gid, &leaves)? {
+            let whole = fitter.draw(gid)?;
+            if let Some(parts) = fitter.fit(&whole, &leaves)? {
                 fitting.insert(gid, parts);
             }
         }
@@ -89,11 +91,11 @@ impl Plan {
         for part in self.composed.iter_mut().flat_map(|glyph| &mut glyph.parts) {
             for (axis, (offset, snaps)) in part.offset.iter().zip(&mut part.snaps).enumerate() {
                 if !snaps.is_empty() {
-                    let near = |ppem: usize| f64::from(snapped(*offset, ppem, scale.units_per_em));
+                    let near = |ppem: usize| f64::from(snapped(*offset, ppem, scale.units_per_em()));
                     let known = predictor.known().iter().zip(&*snaps);
                     let places: Vec<f64> =
                         known.map(|(ppem, snap)| near((*ppem).into()) + f64::from(*snap)).collect();
-                    let em = f64::from(*offset) / f64::from(scale.units_per_em);
+                    let em = f64::from(*offset) / f64::from(scale.units_per_em());
                     let places = predictor.places(axis, em, &places);
                     // Casting clamps, and so far nothing snaps.
                     let snap = |(size, place): (usize, &f64)| (place - near(scale.ppem_of(size))) as i8;
@@ -106,26 +108,35 @@ impl Plan {
     /// Leaves out what would need more models than it saves.
     fn of_parts(gids: &[u16], mut fitting: BTreeMap<u16, Vec<Part>>) -> Self {
         let selected: BTreeSet<u16> = gids.iter().copied().collect();
-        loop {
-            let mut uses: HashMap<u16, usize> = HashMap::new();
-            for parts in fitting.values() {
-                let parts: BTreeSet<u16> = parts.iter().map(|part| part.gid).collect();
-                parts.into_iter().for_each(|part| *uses.entry(part).or_default() += 1);
-            }
-            let before = fitting.len();
-            fitting.retain(|_, parts| {
-                let own: BTreeSet<u16> = parts.iter().map(|part| part.gid).collect();
-                let own = own.iter().filter(|part| !selected.contains(part) && uses[part] == 1);
-                own.count() <= MAX_OWN_PARTS
-            });
-            if fitting.len() == before {
-                let parts = uses.into_keys();
-                let models: BTreeSet<u16> =
-                    gids.iter().copied().filter(|gid| !fitting.contains_key(gid)).chain(parts).collect();
-                let composed = fitting.into_iter().map(|(gid, parts)| Composed { gid, parts });
-                return Self { models: models.into_iter().collect(), composed: composed.collect() };
+        let parts_of = |parts: &[Part]| parts.iter().map(|part| part.gid).collect::<BTreeSet<u16>>();
+        let mut users: HashMap<u16, BTreeSet<u16>> = HashMap::new();
+        for (gid, parts) in &fitting {
+            for part in parts_of(parts) {
+                users.entry(part).or_default().insert(*gid);
             }
         }
+        // What falls away takes a user from its parts, so that the last user of one is looked at again.
+        let mut open: Vec<u16> = fitting.keys().copied().collect();
+        while let Some(gid) = open.pop() {
+            let Some(parts) = fitting.get(&gid).map(|parts| parts_of(parts)) else { continue };
+            let own = parts.iter().filter(|part| !selected.contains(part) && users[part].len() == 1);
+            if own.count() <= MAX_OWN_PARTS {
+                continue;
+            }
+            fitting.remove(&gid);
+            for part in parts {
+                let users = users.entry(part).or_default();
+                users.remove(&gid);
+                if users.len() == 1 {
+                    open.extend(users.iter());
+                }
+            }
+        }
+        let parts = users.into_iter().filter(|(_, users)| !users.is_empty()).map(|(part, _)| part);
+        let models: BTreeSet<u16> =
+            gids.iter().copied().filter(|gid| !fitting.contains_key(gid)).chain(parts).collect();
+        let composed = fitting.into_iter().map(|(gid, parts)| Composed { gid, parts });
+        Self { models: models.into_iter().collect(), composed: composed.collect() }
     }
 }
 
@@ -167,16 +178,21 @@ struct Twins {
 
 impl Twins {
     /// The glyph before this one that it equals, as its only part.
-    fn find(&mut self, gid: u16, fitter: &mut Fitter<'_, '_>) -> Result<Option<Part>, Error> {
+    fn find(&mut self, gid: u16, fitter: &mut Fitter<'_>) -> Result<Option<Part>, Error> {
         let outline = fitter.teacher.unhinted_em(gid)?;
         let Some(first) = outline.points.first() else { return Ok(None) };
         let mut hasher = DefaultHasher::new();
-        let units = f32::from(fitter.scale.units_per_em);
+        let units = f32::from(fitter.scale.units_per_em());
         let rounded = |point: &[f32; 2], axis: usize| ((point[axis] - first[axis]) * units).round() as i32;
         outline.points.iter().for_each(|p| [rounded(p, 0), rounded(p, 1)].hash(&mut hasher));
         let bucket = self.by_shape.entry(hasher.finish()).or_default();
+        if bucket.is_empty() {
+            bucket.push(gid);
+            return Ok(None);
+        }
+        let whole = fitter.draw(gid)?;
         for original in bucket.iter() {
-            if let Some(parts) = fitter.fit(gid, &[*original])? {
+            if let Some(parts) = fitter.fit(&whole, &[*original])? {
                 self.originals.insert(gid, *original);
                 return Ok(parts.into_iter().next());
             }
@@ -198,9 +214,9 @@ struct Shape {
 }
 
 /// Finds out whether glyphs are made of others.
-struct Fitter<'t, 'a> {
-    teacher: &'t Teacher<'a>,
-    sizes: &'t [TeacherAt<'t, 'a>],
+struct Fitter<'t> {
+    teacher: &'t Teacher,
+    sizes: &'t [TeacherAt],
     /// Those sizes in pixels per em.
     ppem: Vec<usize>,
     /// The sizes that the table will have.
@@ -211,7 +227,7 @@ struct Fitter<'t, 'a> {
     snaps: BTreeSet<Vec<i8>>,
 }
 
-impl Fitter<'_, '_> {
+impl Fitter<'_> {
     fn draw(&self, gid: u16) -> Result<Shape, Error> {
         let hinted = self.sizes.iter().map(|at| at.hinted_or_complaint(gid).map(|(outline, _)| outline));
         Ok(Shape { plain: self.teacher.unhinted_em(gid)?, hinted: hinted.collect::<Result<_, _>>()? })
@@ -227,43 +243,43 @@ impl Fitter<'_, '_> {
     }
 
     /// The parts of a glyph that consists of `leaves`, if their models can stand for it.
-    fn fit(&mut self, gid: u16, leaves: &[u16]) -> Result<Option<Vec<Part>>, Error> {
-        let whole = self.draw(gid)?;
+    fn fit(&mut self, whole: &Shape, leaves: &[u16]) -> Result<Option<Vec<Part>>, Error> {
         let shapes = leaves.iter().map(|leaf| self.shape(*leaf)).collect::<Result<Vec<_>, _>>()?;
         let mut parts = Vec::with_capacity(leaves.len());
         let mut at = 0;
         for (leaf, shape) in leaves.iter().zip(&shapes) {
-            let Some(part) = fit_part(&whole, at, *leaf, shape, &self.ppem, self.scale.units_per_em) else {
+            let Some(part) = fit_part(whole, at, *leaf, shape, &self.ppem, self.scale.units_per_em()) else {
                 return Ok(None);
             };
             parts.push(part);
             at += shape.plain.points.len();
         }
-        if at != whole.plain.points.len() || self.sum_error(&whole, &shapes, &parts) > MAX_SUM_ERROR {
+        if at != whole.plain.points.len() || self.sum_error(whole, &shapes, &parts)? > MAX_SUM_ERROR {
             return Ok(None);
         }
         let lists = parts.iter().flat_map(|part| &part.snaps).filter(|snaps| !snaps.is_empty());
-        let lists: BTreeSet<Vec<i8>> = self.snaps.iter().chain(lists).cloned().collect();
+        let new: BTreeSet<&Vec<i8>> = lists.filter(|snaps| !self.snaps.contains(*snaps)).collect();
         // What the table has no room for is trained.
-        if lists.len() >= usize::from(u16::MAX) || lists.len() * self.scale.sizes() > MAX_SNAP_BYTES {
+        let count = self.snaps.len() + new.len();
+        if count >= usize::from(u16::MAX) || count * self.scale.sizes() > MAX_SNAP_BYTES {
             return Ok(None);
         }
-        self.snaps = lists;
+        self.snaps.extend(new.into_iter().cloned());
         Ok(Some(parts))
     }
 
     /// How far the sum of the parts' exact bitmaps is from the glyph's (mae).
-    fn sum_error(&self, whole: &Shape, shapes: &[Rc<Shape>], parts: &[Part]) -> f64 {
+    fn sum_error(&self, whole: &Shape, shapes: &[Rc<Shape>], parts: &[Part]) -> Result<f64, Error> {
         let mut sums = Sums::default();
         for (size, (hinted, ppem)) in whole.hinted.iter().zip(&self.ppem).enumerate() {
             let moved = shapes.iter().zip(parts).map(|(shape, part)| {
                 let mut outline = shape.hinted[size].clone();
-                outline.translate(place(part, size, *ppem, self.scale.units_per_em));
+                outline.translate(place(part, size, *ppem, self.scale.units_per_em()));
                 outline.rasterize()
             });
-            sums.add(&hinted.rasterize(), &sum(&moved.collect::<Vec<Bitmap>>()));
+            sums.add(&hinted.rasterize()?, &sum(&moved.collect::<Result<Vec<Bitmap>, Error>>()?));
         }
-        sums.mae()
+        Ok(sums.mae())
     }
 }
 

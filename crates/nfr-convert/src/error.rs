@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use nfr::internals::Damage;
+
 /// A failure of this crate. Each variant says who is at fault; its text says what was wrong, where, and
 /// what to do about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,13 +42,50 @@ impl std::error::Error for Error {}
 
 impl From<nfr::Error> for Error {
     fn from(error: nfr::Error) -> Self {
+        use nfr::Error as Cause;
+        let again = || format!("{error}; convert the font again");
         match error {
-            nfr::Error::Malformed(what) => Self::Malformed(what),
-            nfr::Error::Unsupported(what) => Self::Unsupported(what),
-            nfr::Error::LimitExceeded(what) => Self::LimitExceeded(what),
-            nfr::Error::MissingGlyph(gid) => Self::MissingGlyph(gid),
-            nfr::Error::InvalidParameter(what) => Self::InvalidParameter(what),
-            other => Self::Malformed(other.to_string()),
+            Cause::NotAFont => Self::Malformed(
+                "these bytes are no OpenType font; pass a .ttf file or a collection of them".into(),
+            ),
+            Cause::NoSuchFont { count, .. } if count <= 1 => {
+                Self::InvalidParameter(format!("{error}; use index 0"))
+            }
+            Cause::NoSuchFont { count, .. } => {
+                Self::InvalidParameter(format!("{error}; use 0–{}", count.saturating_sub(1)))
+            }
+            Cause::MissingTable { .. } | Cause::MalformedTable { .. } => {
+                Self::Malformed(format!("{error}; get the file again"))
+            }
+            Cause::NotConverted => Self::Unsupported(format!("{error}; make one with nfr-convert")),
+            Cause::UnknownVersion { .. } => Self::Unsupported(again()),
+            Cause::MalformedModels { .. } | Cause::MalformedModel { .. } => Self::Malformed(again()),
+            Cause::ModelTooLarge { .. } => Self::LimitExceeded(again()),
+            Cause::BitmapTooLarge { .. } | Cause::DecodedTooLarge { .. } | Cause::TooMuchWork { .. } => {
+                Self::LimitExceeded(error.to_string())
+            }
+            Cause::NoSuchGlyph(glyph) | Cause::MissingModel(glyph) => match u16::try_from(glyph) {
+                Ok(glyph) => Self::MissingGlyph(glyph),
+                Err(_) => Self::InvalidParameter(error.to_string()),
+            },
+            Cause::NetworksNotBuilt(_) | Cause::NetworkSize { .. } | Cause::NetworkOffset { .. } => {
+                Self::Unsupported(error.to_string())
+            }
+            Cause::InvalidSize(_) | Cause::InvalidOffset(_) | Cause::BufferTooSmall { .. } => {
+                Self::InvalidParameter(error.to_string())
+            }
+            _ => Self::Malformed(error.to_string()),
+        }
+    }
+}
+
+impl From<Damage> for Error {
+    fn from(damage: Damage) -> Self {
+        match damage {
+            Damage::Malformed(what) => Self::Malformed(format!("a model {what}")),
+            Damage::TooLarge { what, count, limit } => {
+                Self::LimitExceeded(format!("a model has {count} {what}, {limit} are allowed"))
+            }
         }
     }
 }

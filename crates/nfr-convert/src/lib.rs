@@ -11,11 +11,12 @@ mod course;
 mod deform;
 mod distance;
 pub mod error;
-pub mod networks;
 pub mod open;
 pub mod outline;
+mod parallel;
 pub mod partial;
 pub mod pipeline;
+mod plain;
 pub mod polish;
 pub mod ppem;
 mod predict;
@@ -31,8 +32,13 @@ pub mod teacher;
 pub mod temporary;
 pub mod train;
 mod warp;
+pub mod writer;
 
 pub use error::Error;
-pub use networks::with_networks;
 pub use pipeline::{Conversion, GlyphReport, Options, Progress, convert, resume};
 pub use quality::Quality;
+
+/// Runs the examples of the README as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,9 +1,9 @@
 //! Opening a font file, with an answer to what a person may do about one that does not open.
 
 use read_fonts::FontRef;
+use skrifa::font::Font;
 
 use crate::error::Error;
-use nfr::internals::render;
 use nfr::internals::table;
 
 /// Whether the font carries models already.
@@ -15,8 +15,8 @@ pub fn has_models(font: &FontRef<'_>) -> bool {
 ///
 /// # Errors
 ///
-/// `Malformed` for bytes that are no font or a file that was cut off, `Unsupported` for a compressed web
-/// font, `InvalidParameter` for an index that the file does not have.
+/// `Malformed` for bytes that are no font, for a file that was cut off, or as [`units_per_em`]; `Unsupported` for a
+/// compressed web font, `InvalidParameter` for an index that the file does not have.
 pub fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
     if let Some(b"wOFF" | b"wOF2") = data.get(..4) {
         return Err(Error::Unsupported(
@@ -24,9 +24,30 @@ pub fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
                 .into(),
         ));
     }
-    let font = render::open(data, index)?;
+    let font = nfr::internals::open(data, index)?;
     check_complete(&font, data.len())?;
+    units_per_em(&font)?;
     Ok(font)
+}
+
+/// Font units in an em, of which OpenType allows 16 to 16,384 (1.9, "head").
+///
+/// # Errors
+///
+/// `Malformed` for any other number, or if 'head' cannot be read.
+pub fn units_per_em(font: &FontRef<'_>) -> Result<u16, Error> {
+    Ok(nfr::internals::head_units(font)?)
+}
+
+/// A copy of the font that owns its bytes, for skrifa.
+///
+/// # Errors
+///
+/// `Malformed` if its table directory cannot be read.
+pub fn owned(font: &FontRef<'_>) -> Result<Font, Error> {
+    Font::new(font.data().as_bytes().to_vec(), font.ttc_index().unwrap_or(0)).ok_or_else(|| {
+        Error::Malformed("skrifa cannot read the font's table directory; repair the font".into())
+    })
 }
 
 /// Finds a table that reaches beyond the end of the file: most often a download that stopped early.

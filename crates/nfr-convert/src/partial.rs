@@ -121,8 +121,21 @@ impl Partial {
     }
 
     /// The weights of some glyphs, if all of them are there.
-    pub(super) fn weights(&self, gids: &[u16], scale: Scale) -> Option<Vec<Weights>> {
-        gids.iter().map(|gid| codec::decode(self.found.get(gid)?, scale).ok()).collect()
+    ///
+    /// # Errors
+    ///
+    /// `Io` if they cannot be decoded: their checksum holds, so that nothing but this program wrote them.
+    pub(super) fn weights(&self, gids: &[u16], scale: Scale) -> Result<Option<Vec<Weights>>, Error> {
+        let Some(found) = gids.iter().map(|gid| self.found.get(gid)).collect::<Option<Vec<_>>>() else {
+            return Ok(None);
+        };
+        let decode = |(bytes, gid): (&Vec<u8>, &u16)| {
+            codec::decode(bytes, scale).map_err(|damage| {
+                let damage = damage.of((*gid).into());
+                Error::Io(format!("{} is damaged ({damage}); delete it", self.path.display()))
+            })
+        };
+        found.into_iter().zip(gids).map(decode).collect::<Result<_, _>>().map(Some)
     }
 
     /// Appends the weights of some glyphs and waits until they are on the disk.
@@ -137,7 +150,7 @@ impl Partial {
     ) -> Result<(), Error> {
         let mut payload = Vec::new();
         for (gid, weights) in glyphs {
-            let bytes = codec::encode(weights, scale);
+            let bytes = codec::encode(weights, scale)?;
             payload.extend(gid.to_be_bytes());
             payload.extend((bytes.len() as u32).to_be_bytes());
             payload.extend(bytes);

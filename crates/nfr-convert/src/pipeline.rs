@@ -8,17 +8,20 @@ use read_fonts::FontRef;
 use super::assemble::{HintBytes, assemble, hint_bytes, outline_hash};
 use super::compose::Plan;
 use super::course::Course;
+use super::open::{has_models, open};
 use super::partial::Partial;
 use super::polish::Polish;
 use super::predict::Predictor;
 use super::quality::Quality;
-use super::start::Capacity;
+use super::start::{CELLS_TOLD, Capacity};
 use super::teacher::{Teacher, TeacherAt};
 use super::train::{Backend, Schedule};
 use crate::compare::metrics::Sums;
 use crate::error::Error;
-use nfr::internals::model::Target;
-use nfr::internals::table::{self, GlyphModel, Header, MAX_TRAINED_PPEM, Table};
+use nfr::Target;
+use nfr::internals::table::{Header, MAX_TRAINED_PPEM, Table};
+
+use crate::writer::{self, GlyphModel};
 
 /// What a conversion is asked to do.
 #[derive(Debug, Clone)]
@@ -81,6 +84,34 @@ impl Options {
             polish: quality.polish(),
             ..self
         }
+    }
+
+    /// Checks all that can be told without the font. A conversion begins with it.
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter`, naming the first option that makes no sense.
+    pub fn check(&self) -> Result<(), Error> {
+        let wrong = |what: String| Err(Error::InvalidParameter(what));
+        if self.gids.is_empty() {
+            return wrong("no glyphs are selected".into());
+        }
+        if !self.gids.is_sorted_by(|a, b| a < b) {
+            return wrong("the glyphs are not in ascending order".into());
+        }
+        let (first, last) = (*self.ppem.start(), *self.ppem.end());
+        if first == 0 || first > last || last > MAX_TRAINED_PPEM {
+            return wrong(format!("sizes {first}–{last} ppem; use a range within 1–{MAX_TRAINED_PPEM}"));
+        }
+        if self.ppem_step == 0 {
+            return wrong("0 ppem from size to size; use 1 or more".into());
+        }
+        if self.jobs == 0 {
+            return wrong("0 threads; use 1 or more".into());
+        }
+        self.capacity.check()?;
+        self.schedule.check()?;
+        self.polish.check()
     }
 }
 
@@ -152,9 +183,9 @@ pub fn resume(
     progress: &dyn Progress,
     partial: Option<&Partial>,
 ) -> Result<Conversion, Error> {
-    check(options)?;
-    let font = nfr::internals::render::open(input, options.index)?;
-    if font.table_data(table::TAG).is_some() {
+    options.check()?;
+    let font = open(input, options.index)?;
+    if has_models(&font) {
         return Err(Error::Unsupported(
             "the font already carries an 'Nfrt' table and has no hints left; convert the original font"
                 .into(),
@@ -162,7 +193,13 @@ pub fn resume(
     }
     let teacher = Teacher::new(&font, options.target)?;
     let header = header(&font, options)?;
-    let scale = header.scale(teacher.units_per_em());
+    let units = teacher.units_per_em();
+    let scale = header.scale(units).ok_or_else(|| {
+        Error::InvalidParameter(format!(
+            "{}–{} ppem of {units} units per em; 1–{MAX_TRAINED_PPEM} and 16–16384 are allowed",
+            header.first_ppem, header.last_ppem
+        ))
+    })?;
     let shown = options.ppem.clone().step_by(options.ppem_step.into());
     let sizes = shown.map(|ppem| teacher.at(ppem)).collect::<Result<Vec<_>, _>>()?;
     warn_of_unhinted(&sizes, progress)?;
@@ -181,9 +218,11 @@ pub fn resume(
     let models: Vec<GlyphModel> =
         trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
     judged.extend(course.judge_composed(&models, &plan.composed)?);
-    let (table, _) = table::write(&header, &models, &plan.composed, &[], scale)?;
+    let (table, _) = writer::write(&header, &models, &plan.composed, &[], scale)?;
     let mut sums = Sums::default();
-    options.gids.iter().filter_map(|gid| judged.get(gid)).for_each(|s| sums.merge(s));
+    for gid in &options.gids {
+        sums.merge(judged.get(gid).ok_or(Error::MissingGlyph(*gid))?);
+    }
     let dropped = if options.drop_outlines { judged.keys().copied().collect() } else { BTreeSet::new() };
     Ok(Conversion {
         font: assemble(&font, &table, &dropped)?,
@@ -196,15 +235,15 @@ pub fn resume(
 
 fn reports(table: &Table<'_>, judged: &BTreeMap<u16, Sums>) -> Result<Vec<GlyphReport>, Error> {
     let report = |(&gid, sums): (&u16, &Sums)| {
-        let (figures, composed) = (sums.figures(), table.is_composed(gid));
-        let bytes = table.model_len(gid)?;
+        let (figures, composed) = (sums.figures(), table.is_composed(gid.into()));
+        let bytes = table.model_len(gid.into())?;
         Ok(GlyphReport { gid, bytes, composed, mae: figures.mae, bad16: figures.bad16 })
     };
     judged.iter().map(report).collect()
 }
 
 /// Tells at which sizes the font switches its hints off. A font that does so at all of them teaches nothing.
-fn warn_of_unhinted(sizes: &[TeacherAt<'_, '_>], progress: &dyn Progress) -> Result<(), Error> {
+fn warn_of_unhinted(sizes: &[TeacherAt], progress: &dyn Progress) -> Result<(), Error> {
     let off: Vec<String> =
         sizes.iter().filter(|at| !at.is_hinted()).map(|at| at.ppem().to_string()).collect();
     if off.len() == sizes.len() {
@@ -222,24 +261,6 @@ fn warn_of_unhinted(sizes: &[TeacherAt<'_, '_>], progress: &dyn Progress) -> Res
     Ok(())
 }
 
-fn check(options: &Options) -> Result<(), Error> {
-    let wrong = |what: String| Err(Error::InvalidParameter(what));
-    if options.gids.is_empty() {
-        return wrong("no glyphs are selected".into());
-    }
-    if !options.gids.is_sorted_by(|a, b| a < b) {
-        return wrong("the glyphs are not in ascending order".into());
-    }
-    let (first, last) = (*options.ppem.start(), *options.ppem.end());
-    if first == 0 || first > last || last > MAX_TRAINED_PPEM {
-        return wrong(format!("sizes {first}–{last} ppem; use a range within 1–{MAX_TRAINED_PPEM}"));
-    }
-    if options.ppem_step == 0 {
-        return wrong("0 ppem from size to size; use 1 or more".into());
-    }
-    Ok(())
-}
-
 fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
     let (first, last) = options.ppem.clone().into_inner();
     Ok(Header {
@@ -252,6 +273,6 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
         steps: options.schedule.steps as u16,
         knots: options.capacity.knots as u8,
         rank: options.capacity.rank as u8,
-        cell: (options.capacity.cell * 10_000.0).round() as u16,
+        cell: (options.capacity.cell * CELLS_TOLD).round() as u16,
     })
 }

@@ -4,7 +4,7 @@ use read_fonts::{FontRef, TableProvider};
 
 use super::teach::{Lesson, lesson};
 use super::teacher::Teacher;
-use nfr::internals::model::Target;
+use nfr::Target;
 use nfr::internals::model::gridfit::Scale;
 
 /// The sizes of all samples.
@@ -20,5 +20,5 @@ pub(super) fn lessons(text: &str, target: Target) -> (Vec<Lesson>, Scale) {
     let gid = |c| font.cmap().unwrap().map_codepoint(c).unwrap().to_u32() as u16;
     let lessons = text.chars().map(|c| lesson(&teacher, &sizes, gid(c)).unwrap()).collect();
     let (first_ppem, last_ppem) = SIZES.into_inner();
-    (lessons, Scale { units_per_em: teacher.units_per_em(), first_ppem, last_ppem })
+    (lessons, Scale::new(teacher.units_per_em(), first_ppem, last_ppem).unwrap())
 }

@@ -4,10 +4,11 @@ mod lists;
 
 use std::collections::{BTreeSet, HashMap};
 
-use read_fonts::{FontRef, TableProvider};
-use skrifa::MetadataProvider;
+use read_fonts::{FontRef, ReadError, TableProvider};
+use skrifa::font::name::GlyphNameSource;
 
 use crate::error::Error;
+use crate::open::owned;
 
 pub use lists::{CodePoints, GlyphIds, GlyphNames};
 
@@ -72,8 +73,9 @@ impl Selection {
     }
 
     fn add_characters(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<(), Error> {
+        let font = owned(font)?;
         let charmap = font.charmap();
-        let lookup = |code: u32| charmap.map(code).and_then(|gid| u16::try_from(gid.to_u32()).ok());
+        let lookup = |code: u32| charmap.map_unicode(code).and_then(|gid| u16::try_from(gid.to_u32()).ok());
         for character in self.characters() {
             gids.insert(
                 lookup(character.into()).ok_or_else(|| missing_character(character.into(), "--text"))?,
@@ -89,14 +91,19 @@ impl Selection {
         if self.names.0.is_empty() {
             return Ok(());
         }
-        if font.post().map(|post| post.num_names()).unwrap_or(0) == 0 {
+        let names = match font.post() {
+            Ok(post) => post.num_names(),
+            Err(ReadError::TableIsMissing(_)) => 0,
+            Err(e) => return Err(Error::Malformed(format!("table 'post' cannot be read ({e})"))),
+        };
+        if names == 0 {
             return Err(Error::InvalidParameter(
                 "the font's 'post' table has no glyph names; select with --gids or --unicodes instead".into(),
             ));
         }
         // The first glyph of a name wins, should a damaged font name two alike.
         let mut by_name = HashMap::new();
-        for (gid, name) in glyph_names(font) {
+        for (gid, name) in glyph_names(font)? {
             by_name.entry(name).and_modify(|first: &mut u16| *first = gid.min(*first)).or_insert(gid);
         }
         let missing: Vec<_> = self.names.0.iter().filter(|name| !by_name.contains_key(*name)).collect();
@@ -125,10 +132,16 @@ pub fn glyph_count(font: &FontRef<'_>) -> Result<u32, Error> {
 }
 
 /// The names of the font's glyphs in 'post'; empty if it has none.
-pub fn glyph_names(font: &FontRef<'_>) -> HashMap<u16, String> {
-    let names = font.glyph_names();
-    let named = names.iter().filter(|(_, name)| !name.is_synthesized());
-    named.filter_map(|(gid, name)| Some((u16::try_from(gid.to_u32()).ok()?, name.to_string()))).collect()
+///
+/// # Errors
+///
+/// `Malformed` if the font's table directory cannot be read.
+pub fn glyph_names(font: &FontRef<'_>) -> Result<HashMap<u16, String>, Error> {
+    let font = owned(font)?;
+    let named = font.glyph_names().filter(|(_, name)| name.source() != GlyphNameSource::Synthesized);
+    Ok(named
+        .filter_map(|(gid, name)| Some((u16::try_from(gid.to_u32()).ok()?, name.as_str().to_owned())))
+        .collect())
 }
 
 fn missing_character(code: u32, option: &str) -> Error {

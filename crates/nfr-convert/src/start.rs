@@ -2,12 +2,14 @@
 
 use crate::deform::{self, Sample};
 use crate::distance::signed_distance;
+use crate::error::Error;
 use crate::teach::{HintedGlyph, Lesson};
-use crate::warp::{self, Warp, warp_point};
-use nfr::internals::model::Target;
+use crate::warp::{self, Limits, Warp, warp_point};
+use nfr::Target;
 use nfr::internals::model::gridfit::{
-    AxisWarp, DEFORM_NODES, FIELD_LIMIT, GridAxis, PADDING, Scale, WARP_STEPS, Weights,
+    AxisWarp, DEFORM_NODES, FIELD_LIMIT, GridAxis, MAX_KNOTS, PADDING, Scale, WARP_STEPS, Weights,
 };
+use nfr::internals::table::codec::MAX_RANK;
 
 /// How large a glyph's model may become.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +35,37 @@ impl Default for Capacity {
     }
 }
 
+impl Capacity {
+    /// Checks that a table can hold such models.
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter`, naming the first number that makes no sense.
+    pub fn check(&self) -> Result<(), Error> {
+        let wrong = |what: String| Err(Error::InvalidParameter(what));
+        let Self { cell, knots, knot_gain, rank, least_rank, pattern_gain } = *self;
+        // The table tells the cell in ten-thousandths of an em, in 16 bits.
+        if !(CELLS_TOLD.recip()..=f32::from(u16::MAX) / CELLS_TOLD).contains(&cell) {
+            return wrong(format!("cells of {cell} em; use 0.0001 to 6.5535"));
+        }
+        if !(2..=MAX_KNOTS).contains(&knots) {
+            return wrong(format!("{knots} knots; use 2 to {MAX_KNOTS}"));
+        }
+        if least_rank == 0 || least_rank > rank || rank > MAX_RANK.into() {
+            return wrong(format!("{least_rank} to {rank} patterns; use 1 to {MAX_RANK}, the fewer first"));
+        }
+        for (gain, of) in [(knot_gain, "knots"), (pattern_gain, "patterns")] {
+            // Infinity is a way to say that none need be added.
+            if gain.is_nan() || gain < 0.0 {
+                return wrong(format!("{of} are to leave less than {gain} of the moves; use 0 or more"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A table tells of cells in this share of an em.
+pub(super) const CELLS_TOLD: f32 = 10_000.0;
 /// The fewest cells along an axis.
 const MIN_CELLS: f32 = 6.0;
 /// The most cells along an axis.
@@ -66,7 +99,7 @@ impl Draft {
         if points.is_empty() {
             return Self::default();
         }
-        let units = f32::from(scale.units_per_em);
+        let units = f32::from(scale.units_per_em());
         let extreme = |axis: usize| {
             let values = points.iter().map(move |p| p[axis] * units);
             values.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
@@ -86,7 +119,7 @@ impl Draft {
             ..Self::default()
         };
         for axis in if target == Target::Smooth { 1..2 } else { 0..2 } {
-            let fitted = first_warp(lesson, axis, capacity);
+            let fitted = first_warp(lesson, axis, units, capacity);
             draft.knots[axis] = fitted.knots.iter().map(|k| (k * units).round() as i16).collect();
             draft.hinted[axis] = fitted.hinted.concat();
         }
@@ -129,6 +162,12 @@ impl Draft {
             .collect();
     }
 
+    /// Whether every number is one.
+    pub(super) fn is_finite(&self) -> bool {
+        let all = [&self.field, &self.hinted[0], &self.hinted[1], &self.patterns, &self.embedding];
+        all.into_iter().flatten().all(|v| v.is_finite())
+    }
+
     /// Rounds to what is stored.
     pub fn quantise(&self) -> Weights {
         use nfr::internals::model::gridfit::{EMBEDDING_STEPS, FIELD_STEPS, PATTERN_STEPS};
@@ -155,12 +194,13 @@ impl Draft {
     }
 }
 
-fn first_warp(lesson: &Lesson, axis: usize, capacity: Capacity) -> Warp {
+fn first_warp(lesson: &Lesson, axis: usize, units: f32, capacity: Capacity) -> Warp {
     let plain: Vec<f32> = lesson.outline.points.iter().map(|p| p[axis]).collect();
     let hinted: Vec<Vec<f32>> =
         lesson.sizes.iter().map(|s| s.points.iter().map(|p| p[axis]).collect()).collect();
     let ppem: Vec<u16> = lesson.sizes.iter().map(|s| s.ppem).collect();
-    warp::fit(&plain, &hinted, &ppem, capacity.knots, capacity.knot_gain)
+    let limits = Limits { units, knots: capacity.knots, good_enough: capacity.knot_gain };
+    warp::fit(&plain, &hinted, &ppem, limits)
 }
 
 /// Spline coefficients from the signed distance at their centres.
@@ -210,7 +250,7 @@ mod tests {
                 GridFit::new(&draft.quantise(), scale).unwrap();
                 assert_eq!(draft.knots[0].is_empty(), target == Target::Smooth);
                 assert!(draft.knots.iter().all(|k| k.len() <= Capacity::default().knots));
-                let units = f32::from(scale.units_per_em);
+                let units = f32::from(scale.units_per_em());
                 for [x, y] in lesson.outline.points.iter().map(|p| p.map(|v| v * units)) {
                     let [x0, y0, x1, y1] = draft.bounds.map(f32::from);
                     assert!(

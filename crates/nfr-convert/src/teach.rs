@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::outline::Outline;
 use crate::teacher::{Teacher, TeacherAt};
-use nfr::internals::render::Bitmap;
+use nfr::Bitmap;
 
 /// One glyph as the teacher shows it.
 #[derive(Debug, Clone)]
@@ -33,14 +33,18 @@ pub struct HintedGlyph {
 
 impl Lesson {
     /// The plain glyph at sizes beyond the hinted ones, where the model has to follow the outline.
-    pub(super) fn beyond(&self) -> Vec<HintedGlyph> {
+    ///
+    /// # Errors
+    ///
+    /// As [`Outline::rasterize`].
+    pub(super) fn beyond(&self) -> Result<Vec<HintedGlyph>, Error> {
         let last = self.sizes.last().map_or(0, |size| size.ppem);
         let plain = |ppem: u16| {
             let points: Vec<_> = self.outline.points.iter().map(|p| p.map(|v| v * f32::from(ppem))).collect();
-            let bitmap = self.outline.with_points(&points).rasterize();
-            HintedGlyph { ppem, points, bitmap, predicted: false }
+            let bitmap = self.outline.with_points(&points)?.rasterize()?;
+            Ok(HintedGlyph { ppem, points, bitmap, predicted: false })
         };
-        [last + last.div_ceil(2), last * 2].map(plain).into()
+        [last + last.div_ceil(2), last * 2].map(plain).into_iter().collect()
     }
 }
 
@@ -48,16 +52,25 @@ impl Lesson {
 ///
 /// # Errors
 ///
-/// As the teacher's, and `Unsupported` if the hint programs change the number of points.
-pub fn lesson(teacher: &Teacher<'_>, sizes: &[TeacherAt<'_, '_>], gid: u16) -> Result<Lesson, Error> {
+/// As the teacher's and [`Outline::rasterize`]; `Unsupported` if the hint programs change the number of points, or if
+/// components put points where 16 bits do not reach.
+pub fn lesson(teacher: &Teacher, sizes: &[TeacherAt], gid: u16) -> Result<Lesson, Error> {
     let outline = teacher.unhinted_em(gid)?;
+    let units = f32::from(teacher.units_per_em());
+    let far = |v: &f32| !(f32::from(i16::MIN)..=f32::from(i16::MAX)).contains(&(v * units));
+    if let Some(v) = outline.points.iter().flatten().find(|v| far(v)) {
+        return Err(Error::Unsupported(format!(
+            "glyph {gid} has a point {} font units from its origin, which does not fit 16 bits; leave the glyph out",
+            v * units
+        )));
+    }
     let mut complaint = None;
     let sizes = sizes
         .iter()
         .map(|at| {
             let (hinted, wrong) = at.hinted_or_complaint(gid)?;
             complaint = complaint.take().or(wrong);
-            let bitmap = hinted.rasterize();
+            let bitmap = hinted.rasterize()?;
             if hinted.points.len() != outline.points.len() {
                 return Err(Error::Unsupported(format!(
                     "the hint program of glyph {gid} changes its outline's structure at {} ppem; leave the glyph out",
@@ -79,7 +92,7 @@ mod tests {
 
     use super::*;
     use crate::samples::{SIZES, lessons};
-    use nfr::internals::model::Target;
+    use nfr::Target;
 
     #[test]
     fn a_lesson_has_every_size_with_a_point_for_each_point_of_the_outline() {

@@ -3,38 +3,37 @@
 //! skrifa falls back silently in several places. Here the interpreter is asked for explicitly, and whatever
 //! would make it do something else than run the font's own programs at the size asked for is an error.
 
+use std::sync::OnceLock;
+
 use read_fonts::{FontRef, TableProvider};
-use skrifa::instance::{LocationRef, Size};
-use skrifa::outline::{
-    DrawSettings, Engine, HintingInstance, HintingOptions, OutlineGlyphCollection, OutlineGlyphFormat,
-    SmoothMode, Target as SkrifaTarget,
-};
-use skrifa::{GlyphId, MetadataProvider};
+use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, ScalerFont, ScalerSource};
 
 use crate::error::Error;
 use crate::outline::Outline;
-use nfr::internals::model::Target;
+use crate::plain::{PlainOutlines, draw, glyf_of, undrawable};
+use nfr::Target;
 
 /// The largest size that the teacher draws, in pixels per em.
 pub const MAX_PPEM: f32 = 1024.0;
 
-/// A hinted font as the source of truth.
-pub struct Teacher<'a> {
-    outlines: OutlineGlyphCollection<'a>,
+/// A hinted font as the source of truth. It keeps a copy of the font, and may be used from several threads.
+pub struct Teacher {
+    plain: PlainOutlines,
     target: Target,
-    units_per_em: u16,
+    raster: RasterTarget,
 }
 
-impl<'a> Teacher<'a> {
+impl Teacher {
     /// Takes the font as a teacher.
     ///
     /// # Errors
     ///
-    /// `Unsupported` for a variable font, a font without TrueType outlines, or one without hint programs.
-    pub fn new(font: &FontRef<'a>, target: Target) -> Result<Self, Error> {
-        let outlines = font.outline_glyphs();
-        match outlines.format() {
-            Some(OutlineGlyphFormat::Glyf) => {}
+    /// `Unsupported` for a variable font, a font without TrueType outlines, or one without hint programs; `Malformed`
+    /// if its size of an em is not one that OpenType allows.
+    pub fn new(font: &FontRef<'_>, target: Target) -> Result<Self, Error> {
+        let plain = PlainOutlines::new(font)?;
+        match plain.table() {
+            Some(OutlineSource::Glyf) => {}
             Some(_) => {
                 return Err(Error::Unsupported(
                     "the outlines are PostScript (CFF), not TrueType; convert them to a hinted TrueType font first"
@@ -58,16 +57,12 @@ impl<'a> Teacher<'a> {
                     .into(),
             ));
         }
-        let units_per_em = font
-            .head()
-            .map_err(|e| Error::Malformed(format!("table 'head' cannot be read ({e})")))?
-            .units_per_em();
-        Ok(Self { outlines, target, units_per_em })
+        Ok(Self { plain, target, raster: raster_target(target)? })
     }
 
     /// Font units in an em.
     pub fn units_per_em(&self) -> u16 {
-        self.units_per_em
+        self.plain.units_per_em()
     }
 
     /// What this teacher hints for.
@@ -81,16 +76,20 @@ impl<'a> Teacher<'a> {
     /// # Errors
     ///
     /// `Malformed` if a program fails.
-    pub fn at(&self, ppem: u16) -> Result<TeacherAt<'_, 'a>, Error> {
+    pub fn at(&self, ppem: u16) -> Result<TeacherAt, Error> {
         check_ppem(f32::from(ppem))?;
-        let options = HintingOptions { engine: Engine::Interpreter, target: skrifa_target(self.target) };
-        let size = Size::new(f32::from(ppem));
-        let hinting =
-            HintingInstance::new(&self.outlines, size, LocationRef::default(), options).map_err(|e| {
-                Error::Malformed(format!("the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"))
-            })?;
-        let hinting = hinting.is_enabled().then_some(hinting);
-        Ok(TeacherAt { teacher: self, hinting, ppem })
+        let scaler = interpreter(self.plain.source(), ppem, self.raster, Failing::Refused);
+        if let Some(e) = scaler.hinting_error() {
+            return Err(Error::Malformed(format!(
+                "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"
+            )));
+        }
+        if scaler.hint_engine() != Some(HintEngine::TrueType) {
+            return Err(Error::Unsupported(format!(
+                "skrifa does not run the font's hint programs at {ppem} ppem; pass a hinted TrueType font"
+            )));
+        }
+        Ok(TeacherAt { strict: scaler, lenient: OnceLock::new(), ppem, raster: self.raster })
     }
 
     /// The plain scaled outline, at any size.
@@ -100,7 +99,7 @@ impl<'a> Teacher<'a> {
     /// `MissingGlyph` for a glyph that the font does not have, `Malformed` for one that cannot be drawn.
     pub fn unhinted(&self, gid: u16, ppem: f32) -> Result<Outline, Error> {
         check_ppem(ppem)?;
-        self.draw(gid, DrawSettings::unhinted(Size::new(ppem), LocationRef::default()), ppem)
+        self.plain.at(gid, ppem)
     }
 
     /// The plain outline in em.
@@ -109,31 +108,20 @@ impl<'a> Teacher<'a> {
     ///
     /// As `unhinted`.
     pub fn unhinted_em(&self, gid: u16) -> Result<Outline, Error> {
-        // Unscaled font units are exact; a scaled outline is rounded to 26.6 pixels.
-        let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
-        let mut outline = self.draw(gid, settings, f32::from(self.units_per_em))?;
-        outline.scale(1.0 / f32::from(self.units_per_em));
-        Ok(outline)
-    }
-
-    fn draw(&self, gid: u16, settings: DrawSettings<'_>, ppem: f32) -> Result<Outline, Error> {
-        let glyph = self.outlines.get(GlyphId::from(gid)).ok_or(Error::MissingGlyph(gid))?;
-        let mut outline = Outline::default();
-        glyph
-            .draw(settings, &mut outline)
-            .map_err(|e| Error::Malformed(format!("glyph {gid} cannot be drawn at {ppem} ppem ({e})")))?;
-        Ok(outline)
+        self.plain.em(gid)
     }
 }
 
 /// The teacher at one size.
-pub struct TeacherAt<'t, 'a> {
-    teacher: &'t Teacher<'a>,
-    hinting: Option<HintingInstance>,
+pub struct TeacherAt {
+    strict: ScalerFont,
+    /// Made for the first glyph whose program fails, which most fonts do not have.
+    lenient: OnceLock<ScalerFont>,
     ppem: u16,
+    raster: RasterTarget,
 }
 
-impl TeacherAt<'_, '_> {
+impl TeacherAt {
     /// The size in pixels per em.
     pub fn ppem(&self) -> u16 {
         self.ppem
@@ -141,7 +129,7 @@ impl TeacherAt<'_, '_> {
 
     /// Whether the font wants hinting at this size; its `prep` program can switch it off.
     pub fn is_hinted(&self) -> bool {
-        self.hinting.is_some()
+        self.strict.is_hinted()
     }
 
     /// The hinted outline.
@@ -161,14 +149,20 @@ impl TeacherAt<'_, '_> {
     /// As `hinted`.
     pub fn hinted_or_complaint(&self, gid: u16) -> Result<(Outline, Option<String>), Error> {
         let ppem = f32::from(self.ppem);
-        let Some(hinting) = &self.hinting else { return Ok((self.teacher.unhinted(gid, ppem)?, None)) };
-        match self.teacher.draw(gid, DrawSettings::hinted(hinting, true), ppem) {
+        match draw(&self.strict, gid) {
             Ok(outline) => Ok((outline, None)),
-            Err(error @ Error::MissingGlyph(_)) => Err(error),
-            Err(error) => {
-                let outline = self.teacher.draw(gid, DrawSettings::hinted(hinting, false), ppem)?;
-                Ok((outline, Some(format!("{error}; other renderers ignore that, and so does the model"))))
+            Err(e @ ScaleError::Hinting(_)) => {
+                let lenient = self.lenient.get_or_init(|| {
+                    interpreter(glyf_of(self.strict.font().clone()), self.ppem, self.raster, Failing::Kept)
+                });
+                let outline = draw(lenient, gid).map_err(|e| undrawable(gid, Some(ppem), &e))?;
+                let complaint = format!(
+                    "the hint program of glyph {gid} fails at {ppem} ppem ({e}); other renderers ignore that, and so \
+                     does the model"
+                );
+                Ok((outline, Some(complaint)))
             }
+            Err(e) => Err(undrawable(gid, Some(ppem), &e)),
         }
     }
 }
@@ -180,13 +174,38 @@ fn check_ppem(ppem: f32) -> Result<(), Error> {
     Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_PPEM}")))
 }
 
-/// The settings under which skrifa equals FreeType's default render.
-fn skrifa_target(target: Target) -> SkrifaTarget {
-    let smooth =
-        |mode| SkrifaTarget::Smooth { mode, symmetric_rendering: true, preserve_linear_metrics: false };
+/// What becomes of a glyph whose program fails.
+#[derive(Clone, Copy, PartialEq)]
+enum Failing {
+    /// It is not drawn.
+    Refused,
+    /// It is drawn as its program left it.
+    Kept,
+}
+
+/// The font's own programs for one size, with the settings under which skrifa equals FreeType's default render.
+/// FreeType 2.13 takes no notice of `gasp`; skrifa calls that classic ClearType.
+fn interpreter(
+    font: impl Into<ScalerSource>,
+    ppem: u16,
+    target: RasterTarget,
+    failing: Failing,
+) -> ScalerFont {
+    let options = HintOptions::interpreter()
+        .with_target(target)
+        .with_classic_cleartype(true)
+        .with_symmetric_rendering(true)
+        .with_preserve_linear_metrics(false)
+        .with_pedantic(failing == Failing::Refused);
+    ScalerFont::hinted(font, f32::from(ppem), options)
+}
+
+/// What skrifa calls a target.
+fn raster_target(target: Target) -> Result<RasterTarget, Error> {
     match target {
-        Target::Smooth => smooth(SmoothMode::Normal),
-        Target::Mono => SkrifaTarget::Mono,
-        Target::Lcd => smooth(SmoothMode::Lcd),
+        Target::Smooth => Ok(RasterTarget::Normal),
+        Target::Mono => Ok(RasterTarget::Mono),
+        Target::Lcd => Ok(RasterTarget::Lcd),
+        other => Err(Error::Unsupported(format!("there is no teacher for the target {other}"))),
     }
 }

@@ -15,16 +15,28 @@ const MIN_SPACING: f32 = 0.006;
 /// Pulls each knot's displacement towards its neighbours' where the points do not determine it.
 const RIDGE: f64 = 1e-4;
 
-/// Fits a warp of at most `max_knots` knots. `plain` holds a coordinate of each outline point in em,
-/// `hinted` the same coordinate in pixels for each size, `ppem` the sizes. Stops once the mean squared residual
-/// falls below `good_enough` (pixels²).
-pub(super) fn fit(
-    plain: &[f32],
-    hinted: &[Vec<f32>],
-    ppem: &[u16],
-    max_knots: usize,
-    good_enough: f64,
-) -> Warp {
+/// When a fit is good enough, and what its knots are stored in.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// Font units in an em. Knots are stored in whole ones, and no two in the same one.
+    pub(super) units: f32,
+    /// Knots, at most.
+    pub(super) knots: usize,
+    /// No more are added once they leave less than this (mean square, pixels²).
+    pub(super) good_enough: f64,
+}
+
+impl Limits {
+    /// Whether two levels (em) can both be knots. Levels lie between font units, too: curves have points there that
+    /// the font leaves out.
+    fn apart(self, a: f32, b: f32) -> bool {
+        (a - b).abs() > MIN_SPACING && (a * self.units).round() != (b * self.units).round()
+    }
+}
+
+/// Fits a warp. `plain` holds a coordinate of each outline point in em, `hinted` the same coordinate in pixels for
+/// each size, `ppem` the sizes.
+pub(super) fn fit(plain: &[f32], hinted: &[Vec<f32>], ppem: &[u16], limits: Limits) -> Warp {
     let mut levels = plain.to_vec();
     levels.sort_by(f32::total_cmp);
     levels.dedup();
@@ -37,14 +49,14 @@ pub(super) fn fit(
         return Warp { knots: Vec::new(), hinted: vec![Vec::new(); ppem.len()] };
     };
     let mut knots = vec![low];
-    if high - low > MIN_SPACING {
+    if limits.apart(high, low) {
         knots.push(high);
     }
     let mut best = solve(&knots, plain, &moves);
-    while knots.len() < max_knots && best.1 > good_enough {
+    while knots.len() < limits.knots && best.1 > limits.good_enough {
         let candidate = levels
             .iter()
-            .filter(|v| knots.iter().all(|k| (*k - **v).abs() > MIN_SPACING))
+            .filter(|v| knots.iter().all(|k| limits.apart(*k, **v)))
             .map(|&v| {
                 let mut trial = knots.clone();
                 trial.push(v);
@@ -152,6 +164,7 @@ mod tests {
 
     /// Where the fits stop adding knots (mean square, pixels²).
     const GOOD_ENOUGH: f64 = 2e-5;
+    const LIMITS: Limits = Limits { units: 2048.0, knots: 12, good_enough: GOOD_ENOUGH };
     /// What they may leave of moves that they can explain: `RIDGE` pulls a little.
     const LEFT_OVER: f64 = 5.0 * GOOD_ENOUGH;
 
@@ -191,7 +204,7 @@ mod tests {
                     plain.iter().map(|p| p * f32::from(*s) + moved(*p)).collect()
                 })
                 .collect();
-            let warp = fit(&plain, &hinted, &ppem, 12, GOOD_ENOUGH);
+            let warp = fit(&plain, &hinted, &ppem, LIMITS);
             prop_assert!(warp.knots.is_sorted_by(|a, b| a < b));
             let rows = hinted.iter().enumerate();
             let left = rows.flat_map(|(size, row)| plain.iter().zip(row).map(move |(p, h)| (size, p, h)));
@@ -205,7 +218,7 @@ mod tests {
     #[test]
     fn points_that_do_not_move_need_two_knots() {
         let plain = [0.0, 0.1, 0.3, 0.7];
-        let warp = fit(&plain, &[plain.map(|p| p * 16.0).to_vec()], &[16], 12, GOOD_ENOUGH);
+        let warp = fit(&plain, &[plain.map(|p| p * 16.0).to_vec()], &[16], LIMITS);
         assert_eq!(warp.knots, [0.0, 0.7]);
         assert!((warp.hinted[0][1] - 0.7 * 16.0).abs() < 1e-4);
     }
@@ -215,23 +228,34 @@ mod tests {
         let plain: Vec<f32> = (0..40).map(|k| k as f32 * 0.02).collect();
         let jagged: Vec<f32> = plain.iter().enumerate().map(|(k, p)| p * 16.0 + (k % 2) as f32).collect();
         for most in [2, 5, 12] {
-            assert_eq!(
-                fit(&plain, std::slice::from_ref(&jagged), &[16], most, GOOD_ENOUGH).knots.len(),
-                most
-            );
+            let limits = Limits { knots: most, ..LIMITS };
+            assert_eq!(fit(&plain, std::slice::from_ref(&jagged), &[16], limits).knots.len(), most);
+        }
+    }
+
+    #[test]
+    fn no_two_knots_are_the_same_in_font_units() {
+        for units in [16.0, 64.0, 100.0, 160.0, 1000.0f32] {
+            // Half font units, as between two points of a curve.
+            let plain: Vec<f32> = (0..60).map(|k| k as f32 * 0.5 / units).collect();
+            let jagged: Vec<f32> = plain.iter().enumerate().map(|(k, p)| p * 16.0 + (k % 3) as f32).collect();
+            let limits = Limits { units, knots: 32, ..LIMITS };
+            let knots = fit(&plain, &[jagged], &[16], limits).knots;
+            let stored: Vec<f32> = knots.iter().map(|k| (k * units).round()).collect();
+            assert!(stored.is_sorted_by(|a, b| a < b) && stored.len() > 3, "{units}: {stored:?}");
         }
     }
 
     #[test]
     fn points_on_one_level_need_one_knot() {
-        let warp = fit(&[0.25; 3], &[vec![5.0; 3], vec![9.0; 3]], &[16, 32], 12, GOOD_ENOUGH);
+        let warp = fit(&[0.25; 3], &[vec![5.0; 3], vec![9.0; 3]], &[16, 32], LIMITS);
         assert_eq!(warp.knots, [0.25]);
         assert!((warp.hinted[0][0] - 5.0).abs() < 1e-4 && (warp.hinted[1][0] - 9.0).abs() < 1e-4);
     }
 
     #[test]
     fn an_outline_without_points_has_no_knots() {
-        let warp = fit(&[], &[Vec::new(), Vec::new()], &[16, 17], 12, GOOD_ENOUGH);
+        let warp = fit(&[], &[Vec::new(), Vec::new()], &[16, 17], LIMITS);
         assert!(warp.knots.is_empty() && warp.hinted == vec![Vec::<f32>::new(); 2]);
     }
 }

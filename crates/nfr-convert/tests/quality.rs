@@ -43,16 +43,16 @@ fn measure(name: &str, target: Target) -> Measured {
     let data = font(name);
     let options = options(&data, TEXT, target, STEPS);
     let conversion = convert(&data, &options, &Silent).unwrap();
-    let neural = Font::parse(&conversion.font).unwrap();
+    let neural = Font::new(conversion.font.clone()).unwrap();
     let mut rasterizer = Rasterizer::new(&neural);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
     let (mut ours, mut plain) = (Sums::default(), Sums::default());
     for ppem in options.ppem.clone() {
         let at = teacher.at(ppem).unwrap();
         for gid in &options.gids {
-            let truth = at.hinted(*gid).unwrap().rasterize();
-            ours.add(&truth, &rasterizer.render(*gid, f32::from(ppem)).unwrap());
-            plain.add(&truth, &teacher.unhinted(*gid, ppem.into()).unwrap().rasterize());
+            let truth = at.hinted(*gid).unwrap().rasterize().unwrap();
+            ours.add(&truth, &rasterizer.render((*gid).into(), f32::from(ppem)).unwrap());
+            plain.add(&truth, &teacher.unhinted(*gid, ppem.into()).unwrap().rasterize().unwrap());
         }
     }
     assert_eq!(ours, conversion.sums, "{name}: the report is not about what the font draws");

@@ -4,11 +4,12 @@
 
 mod samples;
 
+use nfr::internals::Scratch;
 use nfr::internals::model::gridfit::{
     AxisWarp, BOX_SLACK, DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, GridFit, MIN_KNOT_GAP, PADDING,
     PATTERN_STEPS, Scale, WARP_STEPS, Weights,
 };
-use nfr::{Placement, Scratch, Target};
+use nfr::{Placement, Target};
 use nfr_convert::start::{Capacity, Draft};
 use nfr_convert::teach::lesson;
 use nfr_convert::teacher::Teacher;
@@ -27,7 +28,8 @@ struct Strips {
 
 /// Where the grid begins and how long it is, in em.
 fn grid(weights: &Weights, scale: Scale, axis: usize) -> [f64; 2] {
-    let [low, high] = [axis, axis + 2].map(|k| f64::from(weights.bounds[k]) / f64::from(scale.units_per_em));
+    let [low, high] =
+        [axis, axis + 2].map(|k| f64::from(weights.bounds[k]) / f64::from(scale.units_per_em()));
     [low - f64::from(PADDING), high - low + 2.0 * f64::from(PADDING)]
 }
 
@@ -92,7 +94,7 @@ struct Twin<'a> {
 
 impl Twin<'_> {
     fn em(&self, units: i16) -> f64 {
-        f64::from(units) / f64::from(self.scale.units_per_em)
+        f64::from(units) / f64::from(self.scale.units_per_em())
     }
 
     /// The number of the trained size that this one is fitted as: it is less than half a pixel per em off, or half of
@@ -306,8 +308,8 @@ const CAPACITY: Capacity =
 fn compare(name: &str, target: Target, text: &str, bounds: &[Bound]) {
     let data = font(name);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
-    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 40 };
-    let hinted: Vec<_> = (scale.first_ppem..=scale.last_ppem).map(|s| teacher.at(s).unwrap()).collect();
+    let scale = Scale::new(teacher.units_per_em(), 8, 40).unwrap();
+    let hinted: Vec<_> = (scale.first_ppem()..=scale.last_ppem()).map(|s| teacher.at(s).unwrap()).collect();
     let finest = f64::from(bounds[bounds.len() - 1].0) * STRIPS_PER_PIXEL;
     let mut found = vec![Differences::default(); bounds.len()];
     for character in text.chars() {
@@ -320,7 +322,7 @@ fn compare(name: &str, target: Target, text: &str, bounds: &[Bound]) {
             let place = model.placement(*ppem).unwrap();
             compare_placement(&twin, place, &format!("{name}, {target}, {character:?} at {ppem} ppem"));
             let mut pixels = vec![0; place.area()];
-            model.draw(*ppem, place, &mut Scratch::default(), &mut pixels);
+            model.draw(*ppem, place, &mut Scratch::default(), &mut pixels).unwrap();
             found.add(&pixels, &twin.draw(&strips, place));
         }
     }

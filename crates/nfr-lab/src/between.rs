@@ -113,7 +113,7 @@ impl<'w> Axis<'w> {
     /// The hinted position of a place in the box at a size, in steps.
     fn at(&self, place: f64, size: usize) -> f64 {
         let units = self.low + place * self.span;
-        let per_unit = self.scale.ppem_of(size) as f64 / f64::from(self.scale.units_per_em);
+        let per_unit = self.scale.ppem_of(size) as f64 / f64::from(self.scale.units_per_em());
         let steps = f64::from(WARP_STEPS) * per_unit;
         let (knots, hinted) = (&self.warp.knots, self.hinted(size));
         let above = knots.partition_point(|k| f64::from(*k) <= units);
@@ -167,7 +167,7 @@ fn mixed_warp([a, b]: [Axis<'_>; 2], bounds: [i16; 4], axis: usize, t: f64, snap
 mod tests {
     use super::*;
 
-    const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 10, last_ppem: 11 };
+    const SCALE: Scale = Scale::new(1000, 10, 11).unwrap();
 
     /// A model whose field rises by `slope` a cell, with three knots.
     fn model(bounds: [i16; 4], cells: u8, slope: i8, hinted: [i32; 6]) -> Weights {

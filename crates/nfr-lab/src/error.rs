@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::Square;
-use nfr::internals::render::{Bitmap, Placement};
+use nfr::{Bitmap, Placement};
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::error::Error;
 

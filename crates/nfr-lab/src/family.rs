@@ -12,11 +12,13 @@ use super::implicit::{Implicit, Pixels, Statistics};
 use super::learn::{self, Learnt};
 use super::samples::ImplicitSet;
 use super::single::grid_fit_font;
+use super::tensors::values;
 use super::train::Epoch;
 use super::truth::TruthSize;
+use nfr::Font;
+use nfr::internals::Glyph as Drawable;
+use nfr::internals::model::compose::Origin;
 use nfr::internals::model::gridfit::{GridFit, Scale};
-use nfr::internals::render::{Font, Glyph as Drawable};
-use nfr::internals::table::{TAG, Table};
 use nfr_convert::error::Error;
 use nfr_convert::open::open;
 
@@ -75,7 +77,11 @@ pub fn train(bench: &Bench<'_>, name: &str, members: &[Member<'_>], glyph: char)
 
 impl Family {
     /// What the network draws at each size for the member with this number.
-    pub fn member(&self, number: usize) -> Vec<Square> {
+    ///
+    /// # Errors
+    ///
+    /// `Unsupported` for a device whose numbers cannot be read.
+    pub fn member(&self, number: usize) -> Result<Vec<Square>, Error> {
         self.draw(number, |_, pixels| {
             pixels.weights.clone().map(|weights| self.network.weight_latents(weights))
         })
@@ -83,7 +89,11 @@ impl Family {
 
     /// What the network draws at each size from the latent vector a share `t` of the way from one member's to
     /// another's.
-    pub fn between(&self, from: usize, to: usize, t: f64) -> Vec<Square> {
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::member`].
+    pub fn between(&self, from: usize, to: usize, t: f64) -> Result<Vec<Square>, Error> {
         let latents = |number: usize, size: usize| {
             let (pixels, _) = self.set.batch(&[number * self.sizes + size]);
             pixels.weights.map(|weights| self.network.weight_latents(weights))
@@ -91,7 +101,11 @@ impl Family {
         self.draw(from, |size, _| Some(latents(from, size)? * (1.0 - t) + latents(to, size)? * t))
     }
 
-    fn draw(&self, number: usize, of_weights: impl Fn(usize, &Pixels) -> Option<Tensor<2>>) -> Vec<Square> {
+    fn draw(
+        &self,
+        number: usize,
+        of_weights: impl Fn(usize, &Pixels) -> Option<Tensor<2>>,
+    ) -> Result<Vec<Square>, Error> {
         let square = |size: usize| {
             let (pixels, _) = self.set.batch(&[number * self.sizes + size]);
             let latents = of_weights(size, &pixels);
@@ -103,13 +117,14 @@ impl Family {
 
 /// The bitmap of expected coverage for scores `[side², classes]`: the mean of the classes' levels, each as likely as
 /// it is. The paper's code draws families so, and single weights from the likeliest class.
-fn expected(scores: Tensor<2>) -> Square {
+fn expected(scores: Tensor<2>) -> Result<Square, Error> {
+    let [pixels, _] = scores.dims();
     let device = scores.device();
     let levels: Vec<f32> = (0..CLASSES).map(|class| class as f32 * 255.0 / (CLASSES - 1) as f32).collect();
     let levels = Tensor::<1>::from_floats(levels.as_slice(), &device).unsqueeze::<2>();
     let coverage = (softmax(scores, 1) * levels).sum_dim(1).into_data();
-    let values: Vec<f32> = coverage.try_to_vec().unwrap_or_default();
-    Square { side: values.len().isqrt(), pixels: values.into_iter().map(|v| v.round() as u8).collect() }
+    let pixels = values::<f32>(&coverage, pixels)?;
+    Ok(Square { side: pixels.len().isqrt(), pixels: pixels.into_iter().map(|v| v.round() as u8).collect() })
 }
 
 /// The glyph of a character.
@@ -146,15 +161,14 @@ impl GridFits {
         let (a, scale) = self.weights(0)?;
         let (b, _) = self.weights(1)?;
         let model = GridFit::new(&between(&a, &b, t, scale, snap), scale)?;
-        let glyph = Drawable::of_model(model.into(), scale);
+        let glyph = Drawable::of_models(vec![(model.into(), Origin::zero(scale))]);
         let draw = |size: &TruthSize| Ok(size.square(&glyph.render(f32::from(size.ppem))?));
         subject.truth.sizes.iter().map(draw).collect()
     }
 
     fn weights(&self, end: usize) -> Result<(nfr::internals::model::gridfit::Weights, Scale), Error> {
-        let font = open(&self.files[end], 0)?;
-        let units = Font::parse(&self.files[end])?.header().scale(nfr::internals::render::head_units(&font)?);
-        let bytes = font.table_data(TAG).map(|data| data.as_bytes()).unwrap_or_default();
-        Ok((Table::parse(bytes)?.weights(self.gids[end], units)?, units))
+        let font = Font::new(self.files[end].clone())?;
+        let scale = nfr::internals::scale(&font);
+        Ok((nfr::internals::table(&font)?.weights(self.gids[end].into(), scale, usize::MAX)?, scale))
     }
 }

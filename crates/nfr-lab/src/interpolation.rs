@@ -100,14 +100,14 @@ pub fn interpolate(
         Ok::<_, Error>(Drawing { name: name.to_owned(), of: of.to_owned(), drawn, truth, rows })
     };
     let end = |(number, member): (usize, &Member<'_>)| {
-        measured(names::IMPLICIT, family.member(number), &member.subject.name, Some(member.subject))
+        measured(names::IMPLICIT, family.member(number)?, &member.subject.name, Some(member.subject))
     };
     let ends = members.iter().enumerate().map(end).collect::<Result<_, _>>()?;
     let fits = GridFits::train(bench, [first.subject, last.subject], glyph)?;
     let (lighter, bolder) = (truth(first.subject)?, truth(last.subject)?);
     let mean = lighter.iter().zip(&bolder).map(|(a, b)| mixed(a, b, aim.share)).collect();
     let drawings = [
-        (names::IMPLICIT, family.between(0, members.len() - 1, aim.share)),
+        (names::IMPLICIT, family.between(0, members.len() - 1, aim.share)?),
         (names::GRID_FIT, fits.between(first.subject, aim.share, false)?),
         (names::SNAPPED, fits.between(first.subject, aim.share, true)?),
         (names::BITMAPS, mean),

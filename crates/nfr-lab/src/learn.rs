@@ -7,6 +7,7 @@ use super::enlarge::Enlargement;
 use super::implicit::{Implicit, ImplicitConfig, Statistics};
 use super::masked::{Enlarged, Masked};
 use super::samples::{ImplicitSet, Sample, likeliest};
+use super::tensors::values;
 use super::train::checkpoint::Checkpoint;
 use super::train::{Course, Epoch, Learner, Run};
 use nfr_convert::error::Error;
@@ -31,7 +32,7 @@ pub type Tell<'a> = &'a (dyn Fn(usize) + Sync);
 ///
 /// # Errors
 ///
-/// As the checkpoint's.
+/// As the checkpoint's, and `Unsupported` for a device whose numbers cannot be read.
 pub fn implicit(
     samples: Vec<Sample>,
     sizes: usize,
@@ -48,7 +49,7 @@ pub fn implicit(
     let draw = |(k, sample): (usize, &Sample)| {
         likeliest(run.network.forward(&set.batch(&[k]).0, statistics), sample.truth.side)
     };
-    let drawn = set.samples().enumerate().map(draw).collect();
+    let drawn = set.samples().enumerate().map(draw).collect::<Result<_, _>>()?;
     Ok(Learnt { drawn, network: run.network, history: run.history })
 }
 
@@ -56,7 +57,7 @@ pub fn implicit(
 ///
 /// # Errors
 ///
-/// As the checkpoint's.
+/// As the checkpoint's, and `Unsupported` for a device whose numbers cannot be read.
 pub fn masked(
     samples: &[Sample],
     widths: &[usize],
@@ -88,11 +89,11 @@ pub fn masked(
     let run = finished(network, course, items.len(), batch, checkpoint, tell)?;
     let draw = |(k, (sample, enlargement)): (usize, &(&Sample, Enlargement))| {
         let drawn = run.network.forward(batch(&[k]).sizes).into_data();
-        let values: Vec<f32> = drawn.try_to_vec().unwrap_or_default();
-        let pixels = enlargement.shrink(&values).into_iter().map(|v| (v * 255.0).round() as u8).collect();
-        Square { side: sample.truth.side, pixels }
+        let levels = values::<f32>(&drawn, largest * largest)?;
+        let pixels = enlargement.shrink(&levels).into_iter().map(|v| (v * 255.0).round() as u8).collect();
+        Ok(Square { side: sample.truth.side, pixels })
     };
-    let drawn = items.iter().enumerate().map(draw).collect();
+    let drawn = items.iter().enumerate().map(draw).collect::<Result<_, Error>>()?;
     Ok(Learnt { drawn, network: run.network, history: run.history })
 }
 

@@ -16,6 +16,7 @@ pub mod implicit;
 pub mod interpolation;
 pub mod learn;
 pub mod masked;
+pub mod networks;
 pub mod output;
 pub mod pictures;
 mod random;
@@ -27,6 +28,7 @@ pub mod schedule;
 pub mod single;
 pub mod stored;
 pub mod study;
+mod tensors;
 pub mod train;
 pub mod truth;
 

@@ -8,8 +8,10 @@ use super::Square;
 use super::classes::{class_of, coverage_of};
 use super::implicit::{Implicit, ImplicitConfig, Pixels, Statistics, focal_loss};
 use super::masked::{Enlarged, Masked, masked_loss};
+use super::tensors::values;
 use super::train::Learner;
 use nfr::internals::model::network::{self, CLASSES, Shape};
+use nfr_convert::error::Error;
 
 /// A bitmap to learn.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,7 +137,11 @@ fn joined(mut tensors: Vec<Tensor<2>>) -> Tensor<2> {
 }
 
 /// The bitmap that scores `[side², classes]` choose: for each pixel the likeliest class.
-pub fn likeliest(scores: Tensor<2>, side: usize) -> Square {
-    let classes: Vec<i32> = scores.argmax(1).into_data().convert::<i32>().try_to_vec().unwrap_or_default();
-    Square { side, pixels: classes.into_iter().map(|class| coverage_of(class as usize)).collect() }
+///
+/// # Errors
+///
+/// `Unsupported` for scores of another number of pixels.
+pub fn likeliest(scores: Tensor<2>, side: usize) -> Result<Square, Error> {
+    let classes = values::<i32>(&scores.argmax(1).into_data().convert::<i32>(), side * side)?;
+    Ok(Square { side, pixels: classes.into_iter().map(|class| coverage_of(class as usize)).collect() })
 }

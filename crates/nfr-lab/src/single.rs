@@ -8,7 +8,7 @@ use super::implicit::{Implicit, ImplicitConfig};
 use super::learn::{self, Learnt};
 use super::train::Epoch;
 use super::truth::TruthSize;
-use nfr::internals::render::{Font, Rasterizer};
+use nfr::{Font, Rasterizer};
 use nfr_convert::error::Error;
 use nfr_convert::{Options, Progress, convert};
 
@@ -286,12 +286,13 @@ pub fn grid_fit(
     glyphs: &[Glyph],
 ) -> Result<Vec<(Outcome, usize)>, Error> {
     let file = grid_fit_font(bench, subject, glyphs)?;
-    let font = Font::parse(&file)?;
+    let font = Font::new(file)?;
     let mut rasterizer = Rasterizer::new(&font);
     let outcome = |glyph: &Glyph| {
-        let draw = |size: &TruthSize| Ok(size.square(&rasterizer.render(glyph.1, f32::from(size.ppem))?));
+        let draw =
+            |size: &TruthSize| Ok(size.square(&rasterizer.render(glyph.1.into(), f32::from(size.ppem))?));
         let drawn = subject.truth.sizes.iter().map(draw).collect::<Result<Vec<_>, Error>>()?;
-        Ok((Outcome::new(GRID_FIT, subject, *glyph, drawn)?, font.model_len(glyph.1)?))
+        Ok((Outcome::new(GRID_FIT, subject, *glyph, drawn)?, font.model_len(glyph.1.into())?))
     };
     glyphs.iter().map(outcome).collect()
 }

@@ -6,12 +6,13 @@ use burn::tensor::Tensor;
 use super::Square;
 use super::bench::{Glyph, Subject};
 use super::implicit::{Implicit, ImplicitConfig};
+use super::networks::{pack, with_networks};
+use super::tensors::values;
 use super::truth::TruthSize;
 use nfr::internals::model::network::{CONDITIONED, Dense, NetworkSize, NetworkWeights, Norm, Shape};
-use nfr::internals::render::{Font, Rasterizer};
-use nfr::internals::table::{GlyphNetwork, Header, Precision};
+use nfr::internals::table::{Header, Precision};
+use nfr::{Font, Limits, Rasterizer};
 use nfr_convert::error::Error;
-use nfr_convert::networks::with_networks;
 
 /// What readers need of a layout, from the network's configuration.
 ///
@@ -62,12 +63,12 @@ pub fn weights(
     let norms = network
         .norms()
         .iter()
-        .map(|norm| Norm { gamma: numbers(norm.gamma.val()), beta: numbers(norm.beta.val()) });
+        .map(|norm| Ok(Norm { gamma: numbers(norm.gamma.val())?, beta: numbers(norm.beta.val())? }));
     let stored = NetworkWeights {
         shape,
         sizes: (0..subject.truth.sizes.len()).map(|k| size(subject, glyph, k)).collect::<Result<_, _>>()?,
-        dense: layers.collect(),
-        norms: norms.collect(),
+        dense: layers.collect::<Result<_, _>>()?,
+        norms: norms.collect::<Result<_, Error>>()?,
     };
     stored.check()?;
     Ok(stored)
@@ -94,23 +95,24 @@ fn size(subject: &Subject, (_, gid): Glyph, index: usize) -> Result<NetworkSize,
 }
 
 /// A layer; the rows of its share of the latent vector come last, as those of concatenated inputs.
-fn dense(layer: &Linear, from_latent: Option<&Linear>) -> Dense {
+fn dense(layer: &Linear, from_latent: Option<&Linear>) -> Result<Dense, Error> {
     let [inputs, outputs] = layer.weight.dims();
     let mut dense = Dense {
         inputs,
         outputs,
-        weights: numbers(layer.weight.val()),
-        bias: layer.bias.as_ref().map_or_else(|| vec![0.0; outputs], |bias| numbers(bias.val())),
+        weights: numbers(layer.weight.val())?,
+        bias: layer.bias.as_ref().map_or_else(|| Ok(vec![0.0; outputs]), |bias| numbers(bias.val()))?,
     };
     if let Some(share) = from_latent {
         dense.inputs += share.weight.dims()[0];
-        dense.weights.extend(numbers(share.weight.val()));
+        dense.weights.extend(numbers(share.weight.val())?);
     }
-    dense
+    Ok(dense)
 }
 
-fn numbers<const D: usize>(tensor: Tensor<D>) -> Vec<f32> {
-    tensor.into_data().try_to_vec().unwrap_or_default()
+fn numbers<const D: usize>(tensor: Tensor<D>) -> Result<Vec<f32>, Error> {
+    let count = tensor.dims().iter().product();
+    values(&tensor.into_data(), count)
 }
 
 /// A network's bitmaps as a font shows them: blank outside the box of the hinted glyph, which is what is drawn.
@@ -131,19 +133,15 @@ pub fn cropped(sizes: &[NetworkSize], drawn: &[Square]) -> Vec<Square> {
 ///
 /// # Errors
 ///
-/// As [`with_networks`].
+/// As [`pack`] and [`with_networks`].
 pub fn font(
     subject: &Subject,
     networks: &[(Glyph, NetworkWeights)],
     precision: Precision,
     seed: u64,
 ) -> Result<Vec<u8>, Error> {
-    let network = |((_, gid), weights): &(Glyph, NetworkWeights)| GlyphNetwork {
-        gid: *gid,
-        weights: weights.clone(),
-        precision,
-    };
-    let mut networks: Vec<GlyphNetwork> = networks.iter().map(network).collect();
+    let packed = networks.iter().map(|((_, gid), weights)| pack(*gid, weights, precision));
+    let mut networks = packed.collect::<Result<Vec<_>, _>>()?;
     networks.sort_by_key(|network| network.gid);
     networks.dedup_by_key(|network| network.gid);
     with_networks(&subject.data, 0, &networks, &Header { seed, ..Header::default() })
@@ -156,9 +154,12 @@ pub fn font(
 ///
 /// As the renderer's.
 pub fn drawn(file: &[u8], subject: &Subject, (_, gid): Glyph) -> Result<(Vec<Square>, usize), Error> {
-    let font = Font::parse(file)?;
-    let mut rasterizer = Rasterizer::new(&font);
-    let square = |size: &TruthSize| Ok(size.square(&rasterizer.render(gid, f32::from(size.ppem))?));
+    let font = Font::new(file.to_vec())?;
+    // The networks are our own, and may be as wide as the paper's.
+    let mut limits = Limits::default();
+    (limits.decoded_bytes, limits.work) = (usize::MAX, u64::MAX);
+    let mut rasterizer = Rasterizer::new(&font).with_limits(limits);
+    let square = |size: &TruthSize| Ok(size.square(&rasterizer.render(gid.into(), f32::from(size.ppem))?));
     let squares = subject.truth.sizes.iter().map(square).collect::<Result<_, Error>>()?;
-    Ok((squares, font.model_len(gid)?))
+    Ok((squares, font.model_len(gid.into())?))
 }

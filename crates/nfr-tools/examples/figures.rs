@@ -31,7 +31,7 @@ struct Args {
     #[arg(long, value_delimiter = ',', default_value = "50")]
     quality: Vec<f32>,
     /// What to hint for
-    #[arg(long, default_value_t)]
+    #[arg(long, default_value_t, value_parser = target)]
     target: Target,
     /// The sizes to learn
     #[arg(long, default_value = "8-64")]
@@ -42,6 +42,11 @@ struct Args {
     /// The characters
     #[arg(long, default_value = "U+21-7E")]
     unicodes: String,
+}
+
+/// Reads the name of a target.
+fn target(name: &str) -> Result<Target, String> {
+    Target::from_name(name).ok_or_else(|| format!("unknown target {name:?}; use smooth, mono or lcd"))
 }
 
 /// Sizes at which a render has to follow the plain outline.
@@ -109,12 +114,12 @@ fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>>
 }
 
 /// The mean absolute error against the plain outline.
-fn beyond(teacher: &Teacher<'_>, converted: &[u8], gids: &[u16]) -> Result<f64, Box<dyn Error>> {
-    let font = Font::parse(converted)?;
+fn beyond(teacher: &Teacher, converted: &[u8], gids: &[u16]) -> Result<f64, Box<dyn Error>> {
+    let font = Font::new(converted.to_vec())?;
     let mut rasterizer = Rasterizer::new(&font);
     let mut sums = Sums::default();
     for (gid, ppem) in gids.iter().flat_map(|gid| BEYOND.map(|ppem| (*gid, ppem))) {
-        sums.add(&teacher.unhinted(gid, ppem)?.rasterize(), &rasterizer.render(gid, ppem)?);
+        sums.add(&teacher.unhinted(gid, ppem)?.rasterize()?, &rasterizer.render(gid.into(), ppem)?);
     }
     Ok(sums.mae())
 }

@@ -6,9 +6,19 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::files::read;
+use nfr::Target;
 use nfr_convert::select::{CodePoints, GlyphIds, GlyphNames, Selection};
 
 const HEADING: &str = "Glyphs (all that is given adds up)";
+
+/// Reads the name of a target.
+///
+/// # Errors
+///
+/// A sentence for any other word.
+pub fn target(name: &str) -> Result<Target, String> {
+    Target::from_name(name).ok_or_else(|| format!("unknown target {name:?}; use smooth, mono or lcd"))
+}
 
 /// Which glyphs; all that is given adds up.
 #[derive(Debug, Clone, Args)]

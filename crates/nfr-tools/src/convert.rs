@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use serde::Serialize;
 
-use super::args::{SelectionArgs, all_cores, jobs};
+use super::args::{SelectionArgs, all_cores, jobs, target};
 use super::failure::Failure;
 use super::files::{Output, read, same_file};
 use super::progress::{Reporter, Verbosity};
-use nfr::internals::model::Target;
+use nfr::Target;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::report::{Report, glyphs};
 use nfr_convert::open::{has_models, open};
@@ -43,7 +43,7 @@ pub struct Args {
     #[arg(long, value_name = "SIZES")]
     train_ppem: Option<PpemList>,
     /// What to hint for: smooth, mono or lcd
-    #[arg(long, value_name = "TARGET", default_value_t)]
+    #[arg(long, value_name = "TARGET", default_value_t, value_parser = target)]
     target: Target,
     /// How much error is worth how many bytes: 0 for the smallest file, 100 for the least error
     #[arg(long, value_name = "0-100", default_value = "50", value_parser = quality)]
@@ -225,7 +225,7 @@ fn prepare(
         (_, true) => Verbosity::Verbose,
         _ => Verbosity::Normal,
     };
-    let reporter = Reporter::new(verbosity, gids.len(), glyph_names(&font));
+    let reporter = Reporter::new(verbosity, gids.len(), glyph_names(&font)?);
     let options = Options {
         index: args.index,
         gids,

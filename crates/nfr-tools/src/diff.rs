@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
-use super::files::{Output, open_neural, read};
+use super::files::{Output, modelled, open_neural, read};
 use nfr_convert::compare::diff::Sources;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::html::{self, Sample};
@@ -76,7 +76,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     open_neural(&args.neural, &neural)?;
     let pair = FontPair::open(&original, args.index, &neural)?;
     let selection = args.selection.selection()?;
-    let gids = selection.resolve(pair.original(), pair.font().modelled_glyphs())?;
+    let gids = selection.resolve(pair.original(), modelled(pair.font())?)?;
     let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));
     let json = args.json.as_deref().filter(|_| !json_to_stdout).map(Output::new).transpose()?;
     let page = args.html.as_deref().map(page_in).transpose()?;
@@ -91,15 +91,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         output.write(as_json.as_bytes())?;
     }
     if let Some(output) = page {
-        let text = sample(pair.original(), &selection, &gids, PANGRAM);
+        let text = sample(pair.original(), &selection, &gids, PANGRAM)?;
         let sizes = shown(&args.ppem, |ppem| PAGE_SIZES.contains(&ppem));
-        let advance = |gid, ppem: u16| pair.font().advance(gid, ppem.into());
+        let advance = |gid: u16, ppem: u16| pair.font().advance(gid.into(), ppem.into());
         let text = Sample { gids: &text, sizes: &sizes, advance: &advance };
         let html = pair.with_sources(&gids, |sources| html::page(&report, sources, &text))?;
         output.write(html.as_bytes())?;
     }
     if let Some(output) = picture {
-        let text = sample(pair.original(), &selection, &gids, WORD);
+        let text = sample(pair.original(), &selection, &gids, WORD)?;
         output.write(&pair.with_sources(&gids, |sources| draw(args, &pair, &report, sources, &text))?)?;
     }
     let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&report));
@@ -131,7 +131,7 @@ fn draw(
     let mut rows = Vec::new();
     for ppem in shown(&args.ppem, |size| few || PICTURE_SIZES.contains(&size)) {
         let line = |source: &dyn nfr_convert::compare::source::Source| {
-            text_line(source.at(ppem)?.as_mut(), text, |gid| pair.font().advance(gid, ppem.into()))
+            text_line(source.at(ppem)?.as_mut(), text, |gid| pair.font().advance(gid.into(), ppem.into()))
         };
         let cells = vec![line(sources.neural)?, line(sources.truth)?, line(sources.unhinted)?];
         rows.push(Row { label: ppem.to_string(), cells });

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use read_fonts::FontRef;
 
 use super::failure::Failure;
-use nfr::internals::render::Font;
+use nfr::Font;
 use nfr_convert::open::{has_models, open};
 use nfr_convert::temporary::beside;
 
@@ -18,7 +18,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// Opens a font that carries models, both as a plain font file and to render from.
-pub(super) fn open_neural<'a>(path: &Path, data: &'a [u8]) -> Result<(FontRef<'a>, Font<'a>), Failure> {
+pub(super) fn open_neural<'a>(path: &Path, data: &'a [u8]) -> Result<(FontRef<'a>, Font), Failure> {
     let file = open(data, 0).map_err(|e| Failure::from(e).at(path.display()))?;
     if !has_models(&file) {
         return Err(Failure::failed(format!(
@@ -26,8 +26,13 @@ pub(super) fn open_neural<'a>(path: &Path, data: &'a [u8]) -> Result<(FontRef<'a
             path.display()
         )));
     }
-    let font = Font::parse(data).map_err(|e| Failure::from(e).at(path.display()))?;
+    let font = Font::new(data.to_vec()).map_err(|e| Failure::from(e).at(path.display()))?;
     Ok((file, font))
+}
+
+/// The glyphs of a neural font that have models, ascending.
+pub(super) fn modelled(font: &Font) -> Result<Vec<u16>, Failure> {
+    Ok(nfr::internals::table(font)?.gids().collect())
 }
 
 /// A file to be written at the end of the work. It appears whole or not at all.

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::files::{open_neural, read};
-use nfr::internals::table::{self, Precision};
+use nfr::internals::table::{MAJOR_VERSION, MINOR_VERSION, NETWORK_MINOR_VERSION, Precision};
 use nfr_convert::select::glyph_count;
 
 /// Says what a neural font carries
@@ -52,14 +52,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (file, font) = open_neural(&args.font, &data)?;
     let (first_ppem, last_ppem) = font.ppem_range();
     let glyphs_with_models = font.modelled_glyphs().count();
-    let networks: Vec<u16> = font.networks().collect();
+    let table = nfr::internals::table(&font)?;
+    let networks: Vec<u32> = table.network_gids().map(u32::from).collect();
     let network_bytes = networks.iter().map(|gid| font.model_len(*gid)).sum::<Result<usize, _>>();
-    let network_bits = networks.iter().map(|gid| font.precision(*gid).map(Precision::bits));
+    let network_bits = networks.iter().map(|gid| table.precision(*gid).map(Precision::bits));
     let network_bits = network_bits.collect::<Result<BTreeSet<u8>, _>>();
     // The reader refuses any other major version.
-    let minor = if networks.is_empty() { table::MINOR_VERSION } else { table::NETWORK_MINOR_VERSION };
+    let minor = if networks.is_empty() { MINOR_VERSION } else { NETWORK_MINOR_VERSION };
     let info = Info {
-        version: format!("{}.{minor}", table::MAJOR_VERSION),
+        version: format!("{}.{minor}", MAJOR_VERSION),
         target: font.target().name(),
         first_ppem,
         last_ppem,

@@ -17,5 +17,5 @@ mod failure;
 mod files;
 mod progress;
 
-pub use args::SelectionArgs;
+pub use args::{SelectionArgs, target};
 pub use failure::{Failure, finish};

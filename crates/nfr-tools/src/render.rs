@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::args::SelectionArgs;
 use super::failure::Failure;
-use super::files::{Output, open_neural, read};
-use nfr::internals::render::Font;
+use super::files::{Output, modelled, open_neural, read};
+use nfr::Font;
 use nfr_convert::compare::picture::{Row, sheet, specimen, text_line};
 use nfr_convert::compare::source::{Neural, Source};
 use nfr_convert::ppem::PpemList;
@@ -65,11 +65,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let data = read(&args.font)?;
     let (file, font) = open_neural(&args.font, &data)?;
     let selection = args.selection.selection()?;
-    let gids = selection.resolve(&file, font.modelled_glyphs())?;
+    let gids = selection.resolve(&file, modelled(&font)?)?;
     let source = Neural::new(&font, &gids)?;
     if let Some(path) = &args.png {
-        let text: Option<Vec<u16>> = (selection.text.is_some())
-            .then(|| selection.characters().filter_map(|c| font.glyph_for_char(c)).collect());
+        let glyph = |c| font.glyph_for_char(c).and_then(|glyph| u16::try_from(glyph).ok());
+        let text: Option<Vec<u16>> =
+            selection.text.is_some().then(|| selection.characters().filter_map(glyph).collect());
         draw_sheet(args, path, &font, &source, &gids, text.as_deref())?;
     }
     if args.json {
@@ -78,7 +79,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn print_lines(args: &Args, font: &Font<'_>, source: &Neural, gids: &[u16]) -> Result<(), Failure> {
+fn print_lines(args: &Args, font: &Font, source: &Neural, gids: &[u16]) -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
     for &gid in gids {
         for &ppem in args.ppem.sizes() {
@@ -91,7 +92,7 @@ fn print_lines(args: &Args, font: &Font<'_>, source: &Neural, gids: &[u16]) -> R
                 top: place.top,
                 width: place.width,
                 height: place.height,
-                advance: font.advance(gid, ppem.into()),
+                advance: font.advance(gid.into(), ppem.into()),
                 pixels: STANDARD.encode(&bitmap.pixels),
             };
             serde_json::to_writer(&mut out, &line).map_err(io::Error::from)?;
@@ -104,7 +105,7 @@ fn print_lines(args: &Args, font: &Font<'_>, source: &Neural, gids: &[u16]) -> R
 fn draw_sheet(
     args: &Args,
     path: &Path,
-    font: &Font<'_>,
+    font: &Font,
     source: &Neural,
     gids: &[u16],
     text: Option<&[u16]>,
@@ -113,7 +114,7 @@ fn draw_sheet(
     let mut rows = Vec::new();
     for &ppem in args.ppem.sizes() {
         let mut at = source.at(ppem)?;
-        let advance = |gid| font.advance(gid, ppem.into());
+        let advance = |gid: u16| font.advance(gid.into(), ppem.into());
         let lines = match text {
             Some(text) => vec![text_line(at.as_mut(), text, advance)?],
             None => specimen(at.as_mut(), gids, advance, (SHEET_WIDTH / args.zoom).into())?,

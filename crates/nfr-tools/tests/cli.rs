@@ -77,7 +77,12 @@ fn a_font_that_cannot_teach_is_refused_with_the_reason() {
 fn a_collection_index_must_exist() {
     let directory = Directory::new();
     let input = directory.write("in.ttc", &collection(&sans()));
-    convert(&directory, &input, &["--index", "1"]).fails_with(&["in.ttc", "collection of 1", "use 0"]);
+    convert(&directory, &input, &["--index", "1"]).fails_with(&[
+        "in.ttc",
+        "index 1",
+        "file of 1 font",
+        "use index 0",
+    ]);
     convert(&directory, SANS, &["--index", "2"]).fails_with(&["index 2", "use index 0"]);
     convert(&directory, SANS, &["--index", "one"]).rejects_usage(&["--index"]);
 }

@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use common::{Directory, SANS, collection, nfr, nfr_convert, sans};
 use nfr::Font;
+use nfr::internals::decode;
 
 /// 'a' and 'g' of Liberation Sans.
 const GIDS: [u64; 2] = [68, 74];
@@ -68,8 +69,7 @@ fn a_conversion_prints_a_summary_and_writes_a_report() {
 #[test]
 fn render_prints_every_field_of_every_glyph_and_size() {
     let out = nfr(&["render", &converted().font, "--ppem", "10-14", "--json"]).succeeds().stdout;
-    let data = std::fs::read(&converted().font).unwrap();
-    let font = Font::parse(&data).unwrap();
+    let font = Font::new(std::fs::read(&converted().font).unwrap()).unwrap();
     let cells: Vec<_> = GIDS.iter().flat_map(|gid| SIZES.map(move |ppem| (*gid, ppem))).collect();
     assert_eq!(out.lines().count(), cells.len());
     for (line, (gid, ppem)) in out.lines().zip(cells) {
@@ -77,7 +77,7 @@ fn render_prints_every_field_of_every_glyph_and_size() {
         let fields: Vec<_> = line.as_object().unwrap().keys().map(String::as_str).collect();
         assert_eq!(fields.len(), 8, "{fields:?}");
         assert_eq!((line["gid"].as_u64(), line["ppem"].as_u64()), (Some(gid), Some(ppem)));
-        let bitmap = font.glyph(gid as u16).unwrap().render(ppem as f32).unwrap();
+        let bitmap = decode(&font, gid as u32).unwrap().render(ppem as f32).unwrap();
         let place = bitmap.placement;
         assert_eq!(line["left"].as_i64(), Some(place.left.into()));
         assert_eq!(line["top"].as_i64(), Some(place.top.into()));

@@ -8,7 +8,8 @@ mod samples;
 
 use std::collections::BTreeSet;
 
-use nfr::{Font, Rasterizer, Scratch, Target};
+use nfr::internals::decode;
+use nfr::{Font, Rasterizer, Target};
 use nfr_convert::Error;
 use nfr_convert::assemble::assemble;
 use nfr_convert::compare::fonts::FontPair;
@@ -18,10 +19,9 @@ use nfr_convert::teacher::Teacher;
 use nfr_convert::{Conversion, Options, convert, resume};
 use read_fonts::types::GlyphId;
 use read_fonts::{FontRef, TableProvider};
-use skrifa::MetadataProvider;
 
-use common::{Directory, SANS, nfr, nfr_convert, sans};
-use samples::{Silent, font, gid, gids};
+use common::{Directory, SANS, font, nfr, nfr_convert, sans};
+use samples::{Silent, gid, gids};
 
 /// Capitals and small letters with accents above and below, and all that they are made of but the accents.
 const ACCENTED: &str = "AEaeoucÁÀÂÄÅáàâäåéèêëóòôöúùûüç";
@@ -58,7 +58,7 @@ fn accented_letters_are_put_together_from_the_models_of_their_parts() {
 fn a_composed_glyph_is_drawn_as_its_parts_where_hints_put_them() {
     let data = font("LiberationSans-Regular");
     let conversion = convert(&data, &options(&data, ACCENTED, 0), &Silent).unwrap();
-    let font = Font::parse(&conversion.font).unwrap();
+    let font = Font::new(conversion.font.clone()).unwrap();
     let mut rasterizer = Rasterizer::new(&font);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), Target::Smooth).unwrap();
     let (mut base, mut accented) = (Sums::default(), Sums::default());
@@ -66,8 +66,8 @@ fn a_composed_glyph_is_drawn_as_its_parts_where_hints_put_them() {
         let at = teacher.at(ppem).unwrap();
         let mut add = |sums: &mut Sums, text: &str| {
             for gid in gids(&data, text) {
-                let truth = at.hinted(gid).unwrap().rasterize();
-                sums.add(&truth, &rasterizer.render(gid, f32::from(ppem)).unwrap());
+                let truth = at.hinted(gid).unwrap().rasterize().unwrap();
+                sums.add(&truth, &rasterizer.render(gid.into(), f32::from(ppem)).unwrap());
             }
         };
         add(&mut base, "aeou");
@@ -81,22 +81,22 @@ fn a_composed_glyph_is_drawn_as_its_parts_where_hints_put_them() {
 fn a_composed_glyph_of_the_font_equals_that_of_the_rasterizer_at_any_size() {
     let data = font("DejaVuSans");
     let conversion = convert(&data, &options(&data, ACCENTED, 0), &Silent).unwrap();
-    let font = Font::parse(&conversion.font).unwrap();
+    let font = Font::new(conversion.font.clone()).unwrap();
     assert!(font.modelled_glyphs().is_sorted());
     assert_eq!(font.modelled_glyphs().len(), conversion.glyphs.len());
     // A cache of one byte holds one glyph.
-    let mut rasterizers = [8 << 20, 1].map(|bytes| Rasterizer::with_cache(&font, bytes));
-    let mut scratch = Scratch::default();
+    let mut rasterizers = [8 << 20, 1].map(|bytes| Rasterizer::new(&font).with_cache(bytes));
     for gid in font.modelled_glyphs() {
-        let glyph = font.glyph(gid).unwrap();
+        let glyph = decode(&font, gid).unwrap();
         for ppem in [7.0, 12.0, 13.4, 40.0, 90.0] {
             let bitmap = glyph.render(ppem).unwrap();
-            // Whatever the buffer held is drawn over.
-            let mut pixels = vec![77; bitmap.pixels.len() + 1];
-            assert_eq!(glyph.render_into(ppem, &mut scratch, &mut pixels), Ok(bitmap.placement));
-            assert!(pixels[..bitmap.pixels.len()] == bitmap.pixels && pixels.ends_with(&[77]));
             for rasterizer in &mut rasterizers {
                 assert_eq!(rasterizer.render(gid, ppem).unwrap(), bitmap, "glyph {gid} at {ppem} ppem");
+                // Whatever the buffer held is drawn over.
+                let mut pixels = vec![77; bitmap.pixels.len() + 1];
+                let pitch = bitmap.placement.width as usize;
+                assert_eq!(rasterizer.render_into(gid, ppem, &mut pixels, pitch), Ok(bitmap.placement));
+                assert!(pixels[..bitmap.pixels.len()] == bitmap.pixels && pixels.ends_with(&[77]));
             }
         }
     }
@@ -107,10 +107,10 @@ fn equal_shapes_have_one_model() {
     let data = font("LiberationSans-Regular");
     // Latin A, Greek Alpha and Cyrillic A.
     let conversion = convert(&data, &options(&data, "A\u{391}\u{410}", 0), &Silent).unwrap();
-    let font = Font::parse(&conversion.font).unwrap();
+    let font = Font::new(conversion.font.clone()).unwrap();
     let bitmaps = ['A', '\u{391}', '\u{410}'].map(|c| {
         let gid = font.glyph_for_char(c).unwrap();
-        font.glyph(gid).unwrap().render(17.0).unwrap()
+        decode(&font, gid).unwrap().render(17.0).unwrap()
     });
     assert_eq!(composed(&conversion).len(), conversion.glyphs.len() - 1);
     assert!(bitmaps[0] == bitmaps[1] && bitmaps[0] == bitmaps[2]);
@@ -233,12 +233,11 @@ fn dropped_outlines_leave_blanks_that_other_programs_read() {
     let (e, i, ae) = (gid(&data, 'é'), gid(&data, 'i'), gid(&data, 'æ'));
     assert!(!has_outline(1, e) && has_outline(1, gid(&data, 'a')) && has_outline(1, gid(&data, 'b')));
     assert!(has_outline(0, i) && has_outline(0, ae) && has_outline(0, e));
-    let size = skrifa::instance::Size::new(20.0);
-    let metrics =
-        files.each_ref().map(|file| file.glyph_metrics(size, skrifa::instance::LocationRef::default()));
+    let fonts = [&data, &dropped.font].map(|data| skrifa::Font::new(data.clone(), 0).unwrap());
+    let metrics = fonts.each_ref().map(|font| font.glyph_metrics());
     for gid in 0..files[0].maxp().unwrap().num_glyphs() {
         let gid = GlyphId::from(gid);
-        assert_eq!(metrics[0].advance_width(gid), metrics[1].advance_width(gid));
+        assert_eq!(metrics[0].h_advance(gid), metrics[1].h_advance(gid));
     }
     let library = freetype::Library::init().unwrap();
     let face = library.new_memory_face(dropped.font.clone(), 0).unwrap();
@@ -246,7 +245,7 @@ fn dropped_outlines_leave_blanks_that_other_programs_read() {
     for gid in 0..face.num_glyphs() as u32 {
         face.load_glyph(gid, freetype::face::LoadFlag::RENDER).unwrap();
     }
-    let font = Font::parse(&dropped.font).unwrap();
+    let font = Font::new(dropped.font.clone()).unwrap();
     assert!(font.outlines_dropped() && font.outlines_match());
     assert!(FontPair::open(&data, 0, &dropped.font).is_ok());
     let other = std::fs::read(SANS.replace("Sans-", "Serif-")).unwrap();
@@ -291,22 +290,22 @@ fn sizes_left_out_of_the_training_are_predicted() {
     let every = options(&data, "aeg", 0);
     let options = Options { ppem: 8..=41, ppem_step: 3, ..every };
     let conversion = convert(&data, &options, &Silent).unwrap();
-    let font = Font::parse(&conversion.font).unwrap();
+    let font = Font::new(conversion.font.clone()).unwrap();
     assert_eq!(font.ppem_range(), (8, 41));
     // The report is about the sizes that the teacher has shown.
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), Target::Smooth).unwrap();
     let mut sums = Sums::default();
     for ppem in (8..=41).step_by(3) {
         for gid in &options.gids {
-            let truth = teacher.at(ppem).unwrap().hinted(*gid).unwrap().rasterize();
-            sums.add(&truth, &font.glyph(*gid).unwrap().render(f32::from(ppem)).unwrap());
+            let truth = teacher.at(ppem).unwrap().hinted(*gid).unwrap().rasterize().unwrap();
+            sums.add(&truth, &decode(&font, (*gid).into()).unwrap().render(f32::from(ppem)).unwrap());
         }
     }
     assert_eq!(sums, conversion.sums);
     for ppem in 8..=41 {
         for gid in &options.gids {
-            let truth = teacher.at(ppem).unwrap().hinted(*gid).unwrap().rasterize();
-            let ours = font.glyph(*gid).unwrap().render(f32::from(ppem)).unwrap();
+            let truth = teacher.at(ppem).unwrap().hinted(*gid).unwrap().rasterize().unwrap();
+            let ours = decode(&font, (*gid).into()).unwrap().render(f32::from(ppem)).unwrap();
             // A level that is rounded the other way ends a pixel further.
             let near = |a: u32, b: u32| a.abs_diff(b) <= 2;
             let (ours, truth) = (ours.placement, truth.placement);

@@ -1,18 +1,20 @@
 //! Where the field changes its sign: closed loops of points on a fine lattice (marching squares).
 
+use alloc::vec::Vec;
+
 use crate::model::gridfit::spline;
 
 /// Lattice steps in a cell of the field, along each axis.
 pub const LATTICE: usize = 4;
 /// The field counts as at most this (em) on the border of its grid: what is inside ends there.
-pub const BORDER: f32 = -1.0 / 1024.0;
+pub(super) const BORDER: f32 = -1.0 / 1024.0;
 
 /// Where no point is.
 const NONE: u32 = u32::MAX;
 
 /// Working memory that tracing reuses.
 #[derive(Debug, Clone, Default)]
-pub struct Lattice {
+pub(super) struct Lattice {
     /// The field contracted along x: for each row of coefficients, a value for each lattice column.
     contracted: Vec<f32>,
     /// The field on the lattice, bottom row first.
@@ -32,7 +34,7 @@ pub struct Lattice {
 impl Lattice {
     /// Finds the points where the lattice's edges cross the outline, and which follows which with the inside on its
     /// left. `field` has two more coefficients than `cells` on each axis.
-    pub fn trace(&mut self, field: &[f32], cells: [usize; 2]) {
+    pub(super) fn trace(&mut self, field: &[f32], cells: [usize; 2]) {
         self.contract(field, cells);
         self.sample(cells);
         self.find_active(field, cells);
@@ -137,13 +139,13 @@ impl Lattice {
     }
 
     /// Visits each loop once: its points in order, from the one that was found first.
-    pub fn loops(&mut self, mut visit: impl FnMut(&[[f32; 2]])) {
+    pub(super) fn loops(&mut self, mut visit: impl FnMut(&[[f32; 2]])) {
         for first in 0..self.points.len() {
             self.chain.clear();
             let mut at = first;
             while self.next[at] != NONE {
                 self.chain.push(self.points[at]);
-                at = std::mem::replace(&mut self.next[at], NONE) as usize;
+                at = core::mem::replace(&mut self.next[at], NONE) as usize;
             }
             if self.chain.len() > 2 {
                 visit(&self.chain);
@@ -154,7 +156,7 @@ impl Lattice {
 
 /// B-spline weights at each lattice step of a cell, both ends included.
 fn weights() -> [[f32; 3]; LATTICE + 1] {
-    std::array::from_fn(|k| spline(k as f32 / LATTICE as f32))
+    core::array::from_fn(|k| spline(k as f32 / LATTICE as f32))
 }
 
 /// Where the line between two values of different sign crosses zero, 0..1.

@@ -1,10 +1,12 @@
 //! The outline that a field describes. It is the same at all sizes, so that it is traced once: what hinting does to
 //! it at a size is then done to its points.
 
+use alloc::vec::Vec;
+
 mod lattice;
 mod simplify;
 
-pub use lattice::{BORDER, LATTICE};
+pub use lattice::LATTICE;
 
 use crate::model::gridfit::{DEFORM_NODES, GridAxis};
 use lattice::Lattice;

@@ -1,6 +1,10 @@
 //! Fewer points on a loop: none of those left out is farther than a tolerance from the new sides, and the area
 //! stays what it was.
 
+use alloc::vec::Vec;
+
+use crate::model::root::root_f32;
+
 /// A point moves if the straight way between its neighbours is more than this share of the way by it.
 pub(super) const MIN_STRAIGHT: f32 = 0.25;
 
@@ -9,7 +13,7 @@ pub(super) const STEEP: f32 = 4.0;
 
 /// Working memory that simplifying reuses.
 #[derive(Debug, Clone, Default)]
-pub struct Simplifier {
+pub(super) struct Simplifier {
     /// Numbers of the points that stay.
     kept: Vec<usize>,
     /// For each side, twice the area that it cuts off, on its right.
@@ -27,7 +31,7 @@ fn cross(a: [f32; 2], b: [f32; 2]) -> f32 {
 }
 
 fn length(a: [f32; 2]) -> f32 {
-    (a[0] * a[0] + a[1] * a[1]).sqrt()
+    root_f32(a[0] * a[0] + a[1] * a[1])
 }
 
 /// The directions that a side may take: from the first, anticlockwise, to the second.
@@ -36,7 +40,7 @@ struct Wedge([f32; 2], [f32; 2]);
 
 impl Simplifier {
     /// The points that are left of a closed loop: none if it is thinner than the tolerance.
-    pub fn simplify(&mut self, points: &[[f32; 2]], tolerance: f32) -> &[[f32; 2]] {
+    pub(super) fn simplify(&mut self, points: &[[f32; 2]], tolerance: f32) -> &[[f32; 2]] {
         self.points.clear();
         self.keep(points, tolerance);
         if self.kept.len() > 2 {

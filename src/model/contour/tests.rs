@@ -1,5 +1,6 @@
 use proptest::prelude::*;
 
+use super::lattice::BORDER;
 use super::simplify::{MIN_STRAIGHT, STEEP};
 use super::*;
 use crate::model::gridfit::{

@@ -4,7 +4,10 @@ use proptest::prelude::*;
 use super::*;
 use crate::render::Scratch;
 
-const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 11 };
+const SCALE: Scale = match Scale::new(1000, 8, 11) {
+    Some(scale) => scale,
+    None => unreachable!(),
+};
 
 /// A square of half an em, its knots hinted to whole pixels.
 fn square() -> Weights {
@@ -30,7 +33,7 @@ fn square() -> Weights {
 fn malformed(change: impl FnOnce(&mut Weights)) -> bool {
     let mut weights = square();
     change(&mut weights);
-    matches!(GridFit::new(&weights, SCALE), Err(Error::Malformed(_)))
+    matches!(GridFit::new(&weights, SCALE), Err(Damage::Malformed(_)))
 }
 
 #[test]
@@ -62,7 +65,7 @@ fn a_square_hinted_to_whole_pixels_is_drawn_with_whole_pixels() {
     let place = model.placement(10.0).unwrap();
     assert_eq!(place, Placement { left: 0, top: 5, width: 5, height: 5 });
     let mut pixels = vec![0; place.area()];
-    model.draw(10.0, place, &mut Scratch::default(), &mut pixels);
+    model.draw(10.0, place, &mut Scratch::default(), &mut pixels).unwrap();
     // The spline rounds the corners; edges and the inside are whole.
     for (k, pixel) in pixels.iter().enumerate() {
         let corner = [0, 4].contains(&(k % 5)) && [0, 4].contains(&(k / 5));
@@ -75,7 +78,7 @@ fn a_larger_box_than_the_placement_is_drawn_the_same_with_empty_pixels_around() 
     let model = GridFit::new(&square(), SCALE).unwrap();
     let place = Placement { left: -3, top: 8, width: 11, height: 11 };
     let mut pixels = vec![255; place.area()];
-    model.draw(10.0, place, &mut Scratch::default(), &mut pixels);
+    model.draw(10.0, place, &mut Scratch::default(), &mut pixels).unwrap();
     let inked = pixels.iter().enumerate().filter(|(_, p)| **p > 5).map(|(k, _)| [k % 11, k / 11]);
     assert!(inked.clone().count() == 25 && inked.flatten().all(|k| (3..8).contains(&k)), "{pixels:?}");
 }
@@ -99,7 +102,7 @@ fn a_bitmap_beyond_the_limit_is_refused() {
     let weights = Weights { bounds: [-32000, 0, 32000, 500], ..square() };
     let model = GridFit::new(&weights, SCALE).unwrap();
     assert!(model.placement(100.0).is_ok());
-    assert!(matches!(model.placement(2000.0), Err(Error::LimitExceeded(_))));
+    assert!(matches!(model.placement(2000.0), Err(Error::BitmapTooLarge { .. })));
 }
 
 proptest! {

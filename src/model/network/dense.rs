@@ -1,5 +1,7 @@
 //! Dense layers, for eight pixels at a time.
 
+use alloc::vec::Vec;
+
 use wide::f32x8;
 
 use super::Dense;
@@ -20,7 +22,7 @@ struct Matrix {
 
 impl Matrix {
     /// The rows of a layer's weights for some of its inputs.
-    fn new(dense: &Dense, inputs: std::ops::Range<usize>) -> Self {
+    fn new(dense: &Dense, inputs: core::ops::Range<usize>) -> Self {
         let mut panels = Vec::with_capacity(inputs.len() * dense.outputs.div_ceil(PANEL));
         for first in (0..dense.outputs).step_by(PANEL) {
             let last = dense.outputs.min(first + PANEL);
@@ -82,6 +84,11 @@ impl Layer {
             size: (latent > 0).then(|| Matrix::new(&dense, own..dense.inputs)),
             bias: dense.bias,
         }
+    }
+
+    /// The weights for a pixel's own inputs.
+    pub(super) fn weights(&self) -> u64 {
+        self.matrix.inputs as u64 * self.matrix.outputs as u64
     }
 
     pub(super) fn outputs(&self) -> usize {

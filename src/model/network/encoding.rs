@@ -3,7 +3,7 @@
 //! The standard library leaves the last digits of sines and exponentials to the platform. These come from additions,
 //! multiplications and divisions in a fixed order, so that they are the same on every machine.
 
-use std::f64::consts::PI;
+use core::f64::consts::PI;
 
 /// How many waves an encoding has.
 pub const WAVES: usize = 32;

@@ -1,6 +1,8 @@
 //! From a network's numbers to the pixels of a box.
 
-use std::ops::Range;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::Range;
 
 use wide::f32x8;
 
@@ -11,7 +13,7 @@ use super::{
     CLASSES, CONDITIONED, NORMALISED, NORMS, NetworkSize, NetworkWeights, Norm, OUT, REPLACING, Shape,
     TRUNK_LAYERS, coverage_of,
 };
-use crate::error::Error;
+use crate::error::Damage;
 
 /// Tiles of eight pixels that a stage takes together, so that the widest layers' stay in a cache.
 const BLOCK: usize = 8;
@@ -67,7 +69,7 @@ impl Network {
     /// # Errors
     ///
     /// As [`NetworkWeights::check`].
-    pub fn new(weights: NetworkWeights) -> Result<Self, Error> {
+    pub fn new(weights: NetworkWeights) -> Result<Self, Damage> {
         weights.check()?;
         let NetworkWeights { shape, sizes, dense, norms } = weights;
         let encoders = dense.len() - TRUNK_LAYERS;
@@ -89,6 +91,11 @@ impl Network {
         &self.sizes
     }
 
+    /// The multiplications of drawing one box of `side` pixels.
+    pub fn work(&self, side: u8) -> u64 {
+        self.trunk.iter().map(Layer::weights).sum::<u64>() * u64::from(side) * u64::from(side)
+    }
+
     /// The memory that the network takes, in bytes.
     pub fn memory(&self) -> usize {
         let layers = self.encoder.iter().chain(&self.trunk).map(Layer::memory).sum::<usize>();
@@ -98,26 +105,15 @@ impl Network {
     }
 
     /// The coverage, 0–255, of all `side`² pixels of the box at the size number `index` of [`Self::sizes`], top row
-    /// first.
-    ///
-    /// # Errors
-    ///
-    /// `InvalidParameter` for a size that the network does not have.
-    pub fn levels(&self, index: usize) -> Result<Vec<u8>, Error> {
-        Ok(self.scores(index)?.iter().map(level).collect())
+    /// first. `None` for a size that the network does not have.
+    pub fn levels(&self, index: usize) -> Option<Vec<u8>> {
+        Some(self.scores(index)?.iter().map(level).collect())
     }
 
     /// The scores of the classes of coverage, of which the highest is drawn, for all `side`² pixels of the box at the
-    /// size number `index`, top row first.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::levels`].
-    pub fn scores(&self, index: usize) -> Result<Vec<[f32; CLASSES]>, Error> {
-        let size = self.sizes.get(index).ok_or_else(|| {
-            let count = self.sizes.len();
-            Error::InvalidParameter(format!("size number {index} of a network with {count}, counted from 0"))
-        })?;
+    /// size number `index`, top row first. `None` for a size that the network does not have.
+    pub fn scores(&self, index: usize) -> Option<Vec<[f32; CLASSES]>> {
+        let size = self.sizes.get(index)?;
         let latent = self.latent(index);
         let bases: Vec<_> = self.trunk.iter().map(|layer| layer.base(&latent)).collect();
         let side = usize::from(size.side);
@@ -146,7 +142,7 @@ impl Network {
                 norm(parameters, &mut features, pixels);
             }
         }
-        Ok(scores)
+        Some(scores)
     }
 
     /// The numbers that stand for a size, the same in all lanes; none without an encoder.
@@ -174,13 +170,13 @@ impl Network {
         let side = coordinates.len();
         let mut x = Vec::with_capacity(tiles * self.shape.positions());
         for tile in first..first + tiles {
-            let at: [[&[f32]; 2]; LANES] = std::array::from_fn(|lane| {
+            let at: [[&[f32]; 2]; LANES] = core::array::from_fn(|lane| {
                 let pixel = (tile * LANES + lane).min(side * side - 1);
                 [pixel / side, pixel % side].map(|k| coordinates[k].as_slice())
             });
             let mut numbers = at.map(|[y, x]| position(y, x));
             let rows = (0..self.shape.positions())
-                .map(|_| f32x8::new(std::array::from_fn(|lane| numbers[lane].next().unwrap_or(0.0))));
+                .map(|_| f32x8::new(core::array::from_fn(|lane| numbers[lane].next().unwrap_or(0.0))));
             x.extend(rows);
         }
         x
@@ -206,7 +202,7 @@ impl Network {
 fn collect(tiles: &[f32x8], pixels: usize, scores: &mut Vec<[f32; CLASSES]>) {
     for tile in tiles.chunks_exact(CLASSES) {
         for lane in 0..LANES.min(pixels - scores.len()) {
-            scores.push(std::array::from_fn(|class| tile[class].to_array()[lane]));
+            scores.push(core::array::from_fn(|class| tile[class].to_array()[lane]));
         }
     }
 }

@@ -5,6 +5,8 @@
 //! `spec/nfrt.md` describes the evaluation. Every operation in here is an IEEE 754 one in a fixed order, so that the
 //! pixels are the same on every machine.
 
+use alloc::vec::Vec;
+
 mod dense;
 mod encoding;
 mod eval;
@@ -14,8 +16,8 @@ mod norm;
 #[allow(clippy::unwrap_used)]
 mod tests;
 
-use crate::error::Error;
-use crate::table::MAX_TRAINED_PPEM;
+use crate::error::Damage;
+use crate::model::gridfit::MAX_TRAINED_PPEM;
 
 pub use encoding::{ENCODED, WAVES, encode};
 pub use eval::{Network, condition, coordinate, positions};
@@ -101,20 +103,21 @@ impl Shape {
     ///
     /// # Errors
     ///
-    /// `LimitExceeded`.
-    pub fn check(&self) -> Result<(), Error> {
-        let least = u16::from(self.latent > 0);
-        if (1..=MAX_WIDTH).contains(&self.width)
-            && self.latent <= MAX_LATENT
-            && (least..=MAX_ENCODER).contains(&self.encoder)
-        {
-            return Ok(());
+    /// `TooLarge`, or `Malformed` for a network without any feature.
+    pub fn check(&self) -> Result<(), Damage> {
+        for (what, count, limit) in [
+            ("features of the trunk", self.width, MAX_WIDTH),
+            ("numbers for a size", self.latent, MAX_LATENT),
+            ("features of the encoder", self.encoder, MAX_ENCODER),
+        ] {
+            if count > limit {
+                return Err(Damage::TooLarge { what, count: count.into(), limit: limit.into() });
+            }
         }
-        Err(Error::LimitExceeded(format!(
-            "a network of width {}, latent {} and encoder {}; 1–{MAX_WIDTH}, 0–{MAX_LATENT} and {least}–{MAX_ENCODER} \
-             are allowed",
-            self.width, self.latent, self.encoder
-        )))
+        if self.width == 0 || self.latent > 0 && self.encoder == 0 {
+            return Err(Damage::Malformed("has a network without features"));
+        }
+        Ok(())
     }
 }
 
@@ -172,61 +175,57 @@ impl NetworkWeights {
     ///
     /// # Errors
     ///
-    /// `LimitExceeded` for a network that is too large, `InvalidParameter` for one that contradicts itself.
-    pub fn check(&self) -> Result<(), Error> {
-        let wrong = |what: String| Err(Error::InvalidParameter(format!("a network has {what}")));
+    /// `TooLarge` for a network that is too large, `Malformed` for one that contradicts itself.
+    pub fn check(&self) -> Result<(), Damage> {
         self.shape.check()?;
-        if let Some(problem) = sizes_problem(&self.sizes) {
-            return wrong(problem);
-        }
+        check_sizes(&self.sizes)?;
         let layers = self.shape.layers();
-        if self.dense.len() != layers.len() || self.norms.len() != NORMS {
-            let (dense, norms) = (self.dense.len(), self.norms.len());
-            return wrong(format!(
-                "{dense} layers and {norms} norms instead of {} and {NORMS}",
-                layers.len()
-            ));
-        }
-        for (k, (dense, (inputs, outputs))) in self.dense.iter().zip(layers).enumerate() {
-            if (dense.inputs, dense.outputs) != (inputs, outputs)
-                || dense.weights.len() != inputs * outputs
-                || dense.bias.len() != outputs
-            {
-                return wrong(format!("a layer {k} that is not {inputs} to {outputs}"));
-            }
+        let fits = |(dense, (inputs, outputs)): (&Dense, &(usize, usize))| {
+            (dense.inputs, dense.outputs) == (*inputs, *outputs)
+                && dense.weights.len() == inputs * outputs
+                && dense.bias.len() == *outputs
+        };
+        if self.dense.len() != layers.len() || !self.dense.iter().zip(&layers).all(fits) {
+            return Err(Damage::Malformed("has layers that do not fit its shape"));
         }
         let width = usize::from(self.shape.width);
-        if self.norms.iter().any(|norm| norm.gamma.len() != width || norm.beta.len() != width) {
-            return wrong(format!("a norm that has not {width} features"));
+        let fits = |norm: &Norm| norm.gamma.len() == width && norm.beta.len() == width;
+        if self.norms.len() != NORMS || !self.norms.iter().all(fits) {
+            return Err(Damage::Malformed("has batch norms that do not fit its shape"));
         }
         let dense = self.dense.iter().flat_map(|dense| [&dense.weights, &dense.bias]);
         let norms = self.norms.iter().flat_map(|norm| [&norm.gamma, &norm.beta]);
         if dense.chain(norms).flatten().any(|number| !number.is_finite()) {
-            return wrong("weights that are not finite; train it again with a lower learning rate".into());
+            return Err(Damage::Malformed("has weights that are not finite"));
         }
         Ok(())
     }
 }
 
-/// What is wrong with a list of sizes, if anything is.
-pub fn sizes_problem(sizes: &[NetworkSize]) -> Option<String> {
-    let count = sizes.len();
-    if !(1..=MAX_SIZES).contains(&count) {
-        return Some(format!("{count} sizes, 1–{MAX_SIZES} are allowed"));
+/// Checks a list of sizes.
+///
+/// # Errors
+///
+/// `Malformed`, saying what is wrong.
+pub fn check_sizes(sizes: &[NetworkSize]) -> Result<(), Damage> {
+    if !(1..=MAX_SIZES).contains(&sizes.len()) {
+        return Err(Damage::Malformed("has no sizes, or too many"));
     }
     if !sizes.is_sorted_by_key(|size| size.side) {
-        return Some("sizes that are not in the order of their boxes".into());
+        return Err(Damage::Malformed("has sizes that are not in the order of their boxes"));
     }
-    sizes.iter().find_map(|size| {
+    for size in sizes {
         let [left, top, width, height] = size.crop.map(u16::from);
         let side = u16::from(size.side);
         if !(1..=MAX_TRAINED_PPEM).contains(&size.ppem) {
-            return Some(format!("a size of {} ppem, 1–{MAX_TRAINED_PPEM} are allowed", size.ppem));
+            return Err(Damage::Malformed("has a size outside 1–1024 ppem"));
         }
         if !(1..=u16::from(MAX_BOX)).contains(&side) {
-            return Some(format!("a box of {side} pixels, 1–{MAX_BOX} are allowed"));
+            return Err(Damage::Malformed("has a box with too many pixels, or none"));
         }
-        (left + width > side || top + height > side)
-            .then(|| format!("a glyph at {} ppem that leaves its box of {side} pixels", size.ppem))
-    })
+        if left + width > side || top + height > side {
+            return Err(Damage::Malformed("has a glyph that leaves its box"));
+        }
+    }
+    Ok(())
 }

@@ -1,9 +1,13 @@
 //! Batch norm, over the pixels of the bitmap that is drawn.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use wide::f32x8;
 
 use super::Norm;
 use super::dense::LANES;
+use crate::model::root::root_f64;
 
 /// What is added to a variance, so that it is never 0.
 pub const EPSILON: f64 = 1e-3;
@@ -17,7 +21,7 @@ pub(super) fn norm(norm: &Norm, x: &mut [f32x8], pixels: usize) {
         let off = value - means[feature];
         off * off
     });
-    let scale = |(gamma, sum): (&f32, f64)| (f64::from(*gamma) / (sum / count + EPSILON).sqrt()) as f32;
+    let scale = |(gamma, sum): (&f32, f64)| (f64::from(*gamma) / root_f64(sum / count + EPSILON)) as f32;
     let scales: Vec<f32> = norm.gamma.iter().zip(squares).map(scale).collect();
     for tile in x.chunks_exact_mut(norm.gamma.len()) {
         for (k, x) in tile.iter_mut().enumerate() {

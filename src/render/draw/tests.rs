@@ -3,9 +3,12 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::model::gridfit::{AxisWarp, FIELD_STEPS, GridAxis, Scale, Weights};
-use crate::render::glyph::union;
+use crate::render::{Limits, union};
 
-const SCALE: Scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 11 };
+const SCALE: Scale = match Scale::new(1000, 8, 11) {
+    Some(scale) => scale,
+    None => unreachable!(),
+};
 
 /// A ring in a box of 600 × 700 units with its lower left corner at `corner`, the middle of which is hinted upwards,
 /// with a deformation.
@@ -44,7 +47,10 @@ fn placement(models: &[Placed<'_>], ppem: f32) -> Placement {
 
 fn drawn<const MOST: usize>(models: &[Placed<'_>], ppem: f32, place: Placement) -> Vec<u8> {
     let mut pixels = vec![99; place.area()];
-    draw_in_strips::<MOST>(&models.iter().copied(), ppem, place, &mut Scratch::default(), &mut pixels);
+    let mut canvas = Canvas::new(place, &mut pixels, place.width as usize).unwrap();
+    let (mut scratch, mut budget) = (Scratch::default(), Budget::unlimited());
+    draw_in_strips::<MOST>(&models.iter().copied(), ppem, place, &mut scratch, &mut canvas, &mut budget)
+        .unwrap();
     pixels
 }
 
@@ -117,8 +123,58 @@ fn a_scratch_that_was_used_before_draws_the_same() {
         let model = &models[k % 2];
         let place = model.placement(ppem).unwrap();
         let mut pixels = vec![99; place.area()];
-        model.draw(ppem, place, &mut scratch, &mut pixels);
+        model.draw(ppem, place, &mut scratch, &mut pixels).unwrap();
         assert!(pixels == drawn::<STRIP>(&[(model, [0.0; 2])], ppem, place), "{ppem} ppem");
+    }
+}
+
+#[test]
+fn a_placement_that_does_not_hold_the_model_is_an_error() {
+    let (model, mut scratch) = (ring([0, 0]), Scratch::default());
+    let place = model.placement(30.0).unwrap();
+    let mut pixels = vec![7; place.area()];
+    for small in [
+        Placement { width: place.width - 1, ..place },
+        Placement { height: place.height - 1, ..place },
+        Placement { left: place.left + 1, ..place },
+        Placement { top: place.top - 1, ..place },
+        Placement::default(),
+    ] {
+        let error = model.draw(30.0, small, &mut scratch, &mut pixels).unwrap_err();
+        assert!(matches!(error, Error::BufferTooSmall { .. }), "{small:?}: {error}");
+    }
+    let error = model.draw(30.0, place, &mut scratch, &mut pixels[1..]).unwrap_err();
+    assert!(matches!(error, Error::BufferTooSmall { .. }), "{error}");
+    assert!(pixels.iter().all(|pixel| *pixel == 7), "nothing was drawn");
+}
+
+#[test]
+fn a_drawing_that_is_given_up_leaves_no_ink_behind() {
+    let (one, two) = (ring([0, 0]), ring([350, 250]));
+    let models = [(&one, [0.0; 2]), (&two, [0.0; 2])];
+    for ppem in [30.0, 1500.0] {
+        let place = placement(&models, ppem);
+        let mut pixels = vec![0; place.area()];
+        let mut scratch = Scratch::default();
+        // Enough for the first model and not for the second.
+        let polygons =
+            one.polygons(ppem, &mut Tracer::default(), &mut Polygons::default()).at[0].len() as u64;
+        let sides = u64::from(place.width + place.height);
+        let limits = Limits { work: polygons * sides * 3 / 2, ..Limits::default() };
+        let mut canvas = Canvas::new(place, &mut pixels, place.width as usize).unwrap();
+        let given_up = draw(
+            &models.iter().copied(),
+            ppem,
+            place,
+            &mut scratch,
+            &mut canvas,
+            &mut Budget::new(5, &limits),
+        );
+        assert!(matches!(given_up, Err(Error::TooMuchWork { glyph: 5, .. })), "{given_up:?}");
+        let own = one.placement(ppem).unwrap();
+        let mut pixels = vec![0; own.area()];
+        one.draw(ppem, own, &mut scratch, &mut pixels).unwrap();
+        assert!(pixels == drawn::<STRIP>(&[(&one, [0.0; 2])], ppem, own), "{ppem} ppem");
     }
 }
 

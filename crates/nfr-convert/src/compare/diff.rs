@@ -191,15 +191,15 @@ mod tests {
     use super::*;
     use crate::compare::source::{Hinted, SourceAt, Unhinted};
     use crate::teacher::Teacher;
-    use nfr::internals::model::Target;
-    use nfr::internals::render::Bitmap;
+    use nfr::Bitmap;
+    use nfr::Target;
     use read_fonts::FontRef;
 
     const SANS: &[u8] = include_bytes!("../../fonts/LiberationSans-Regular.ttf");
     /// 'A' to 'z' in Liberation Sans.
     const LETTERS: std::ops::RangeInclusive<u16> = 36..=93;
 
-    fn teacher() -> Teacher<'static> {
+    fn teacher() -> Teacher {
         Teacher::new(&FontRef::new(SANS).unwrap(), Target::Smooth).unwrap()
     }
 

@@ -3,28 +3,25 @@
 use std::collections::HashMap;
 
 use read_fonts::FontRef;
-use skrifa::instance::{LocationRef, Size};
-use skrifa::outline::DrawSettings;
-use skrifa::{GlyphId, MetadataProvider};
 
 use super::diff::{Sources, Tallies, compare};
 use super::report::{Report, Subject};
 use super::source::{Hinted, Neural, Unhinted};
 use crate::assemble::outline_hash;
 use crate::error::Error;
-use crate::open::open;
-use crate::outline::Outline;
+use crate::open::{open, owned};
+use crate::plain::PlainOutlines;
 use crate::ppem::PpemList;
 use crate::select::glyph_names;
 use crate::teacher::Teacher;
-use nfr::internals::render::Font;
+use nfr::Font;
 
 /// An original and the neural font made from it, checked to belong together.
 pub struct FontPair<'a> {
     original: FontRef<'a>,
     neural_file: FontRef<'a>,
-    font: Font<'a>,
-    teacher: Teacher<'a>,
+    font: Font,
+    teacher: Teacher,
 }
 
 impl<'a> FontPair<'a> {
@@ -36,7 +33,7 @@ impl<'a> FontPair<'a> {
     /// are not those that its models were trained from.
     pub fn open(original: &'a [u8], index: u32, neural: &'a [u8]) -> Result<Self, Error> {
         let neural_file = open(neural, 0).map_err(|e| about("the neural font", e))?;
-        let font = Font::parse(neural).map_err(|e| about("the neural font", e.into()))?;
+        let font = Font::new(neural.to_vec()).map_err(|e| about("the neural font", e.into()))?;
         let original = open(original, index).map_err(|e| about("the original font", e))?;
         let teacher = Teacher::new(&original, font.target()).map_err(|e| about("the original font", e))?;
         if !font.outlines_match() {
@@ -45,7 +42,7 @@ impl<'a> FontPair<'a> {
                     .into(),
             ));
         }
-        if font.outlines_dropped() && outline_hash(&original)? != font.header().outline_hash {
+        if font.outlines_dropped() && outline_hash(&original)? != nfr::internals::header(&font).outline_hash {
             return Err(Error::InvalidParameter(
                 "the outlines of the original font are not those that the models were trained from; pass the \
                  font that the neural one was converted from"
@@ -56,7 +53,7 @@ impl<'a> FontPair<'a> {
     }
 
     /// The neural font.
-    pub fn font(&self) -> &Font<'a> {
+    pub fn font(&self) -> &Font {
         &self.font
     }
 
@@ -66,7 +63,7 @@ impl<'a> FontPair<'a> {
     }
 
     /// The hinted original.
-    pub fn teacher(&self) -> &Teacher<'a> {
+    pub fn teacher(&self) -> &Teacher {
         &self.teacher
     }
 
@@ -80,13 +77,10 @@ impl<'a> FontPair<'a> {
         if self.font.outlines_dropped() {
             return Ok(());
         }
-        let outlines = self.neural_file.outline_glyphs();
+        let outlines = PlainOutlines::new(&self.neural_file)?;
         for &gid in gids {
-            let mut outline = Outline::default();
-            let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
-            let drawn = outlines.get(GlyphId::from(gid)).map(|glyph| glyph.draw(settings, &mut outline));
-            outline.scale(1.0 / f32::from(self.teacher.units_per_em()));
-            if !matches!(drawn, Some(Ok(_))) || outline.points != self.teacher.unhinted_em(gid)?.points {
+            let plain = self.teacher.unhinted_em(gid)?;
+            if !matches!(outlines.em(gid), Ok(outline) if outline.points == plain.points) {
                 return Err(Error::InvalidParameter(format!(
                     "glyph {gid} is not the same in the two fonts; pass the font that the neural one was converted from"
                 )));
@@ -122,7 +116,7 @@ impl<'a> FontPair<'a> {
             bytes_per_glyph: self.bytes_per_glyph(),
         };
         let tallies = self.with_sources(gids, |sources| compare(sources, gids, ppem.sizes(), jobs))?;
-        Ok(self.summed_up(subject, &tallies))
+        self.summed_up(subject, &tallies)
     }
 
     /// Gives the three ways to draw these glyphs to `f`.
@@ -140,15 +134,16 @@ impl<'a> FontPair<'a> {
         f(Sources { truth: &Hinted(&self.teacher), neural: &neural, unhinted: &Unhinted(&self.teacher) })
     }
 
-    fn summed_up(&self, subject: Subject, tallies: &Tallies) -> Report {
+    fn summed_up(&self, subject: Subject, tallies: &Tallies) -> Result<Report, Error> {
         let mut characters = HashMap::new();
-        for (code, gid) in self.original.charmap().mappings() {
+        for (code, gid) in owned(&self.original)?.charmap().unicodes() {
             if let Some(character) = char::from_u32(code) {
                 characters.entry(gid.to_u32()).or_insert(character);
             }
         }
-        let names = glyph_names(&self.original);
-        Report::new(subject, tallies, |gid| (names.get(&gid).cloned(), characters.get(&gid.into()).copied()))
+        let names = glyph_names(&self.original)?;
+        let called = |gid: u16| (names.get(&gid).cloned(), characters.get(&gid.into()).copied());
+        Ok(Report::new(subject, tallies, called))
     }
 }
 

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use nfr::internals::render::{Bitmap, Placement};
+use nfr::{Bitmap, Placement};
 
 /// A pixel off by more than this, of 255, is visibly wrong: `bad16` counts them.
 pub const BAD_DIFFERENCE: u8 = 16;

@@ -225,7 +225,7 @@ mod tests {
     use super::*;
     use crate::compare::diff::GlyphTally;
     use crate::compare::metrics::Sums;
-    use nfr::internals::render::{Bitmap, Placement};
+    use nfr::{Bitmap, Placement};
 
     fn off_by(difference: u8) -> Pair {
         let placement = Placement { left: 0, top: 1, width: 1, height: 1 };

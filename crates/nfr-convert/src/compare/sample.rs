@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use read_fonts::FontRef;
-use skrifa::MetadataProvider;
 
+use crate::error::Error;
+use crate::open::owned;
 use crate::select::Selection;
 
 /// Every letter, for a line of text.
@@ -17,11 +18,21 @@ const FEWEST_LETTERS: usize = 4;
 const GLYPHS_IN_ORDER: usize = 24;
 
 /// The glyphs of the selection's own text; without one, those of `default` that are among `gids`.
-pub fn sample(font: &FontRef<'_>, selection: &Selection, gids: &[u16], default: &str) -> Vec<u16> {
+///
+/// # Errors
+///
+/// `Malformed` if the font's table directory cannot be read.
+pub fn sample(
+    font: &FontRef<'_>,
+    selection: &Selection,
+    gids: &[u16],
+    default: &str,
+) -> Result<Vec<u16>, Error> {
+    let font = owned(font)?;
     let charmap = font.charmap();
-    let lookup = |c: char| charmap.map(c).and_then(|gid| u16::try_from(gid.to_u32()).ok());
+    let lookup = |c: char| charmap.map_unicode(c).and_then(|gid| u16::try_from(gid.to_u32()).ok());
     if selection.text.is_some() {
-        return selection.characters().filter_map(lookup).collect();
+        return Ok(selection.characters().filter_map(lookup).collect());
     }
     let available: BTreeSet<u16> = gids.iter().copied().collect();
     let letters: Vec<(char, u16)> = default
@@ -31,7 +42,7 @@ pub fn sample(font: &FontRef<'_>, selection: &Selection, gids: &[u16], default: 
         .collect();
     let distinct: BTreeSet<char> = letters.iter().map(|(c, _)| *c).filter(|c| !c.is_whitespace()).collect();
     if distinct.len() < FEWEST_LETTERS {
-        return gids.iter().copied().take(GLYPHS_IN_ORDER).collect();
+        return Ok(gids.iter().copied().take(GLYPHS_IN_ORDER).collect());
     }
-    letters.into_iter().map(|(_, gid)| gid).collect()
+    Ok(letters.into_iter().map(|(_, gid)| gid).collect())
 }

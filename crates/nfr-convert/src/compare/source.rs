@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::error::Error;
 use crate::teacher::{Teacher, TeacherAt};
-use nfr::Scratch;
-use nfr::internals::render::{Bitmap, Font, Glyph};
+use nfr::internals::{Decoder, Glyph, Scratch};
+use nfr::{Bitmap, Font, Limits};
 
 /// Something that draws glyphs, from several threads.
 pub trait Source: Sync {
@@ -28,37 +28,37 @@ pub trait SourceAt {
 }
 
 /// A font's hinted outlines, filled: the truth.
-pub struct Hinted<'t, 'a>(pub &'t Teacher<'a>);
+pub struct Hinted<'t>(pub &'t Teacher);
 
-impl Source for Hinted<'_, '_> {
+impl Source for Hinted<'_> {
     fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
         Ok(Box::new(self.0.at(ppem)?))
     }
 }
 
-impl SourceAt for TeacherAt<'_, '_> {
+impl SourceAt for TeacherAt {
     fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
-        Ok(self.hinted(gid)?.rasterize())
+        self.hinted(gid)?.rasterize()
     }
 }
 
 /// A font's outlines as they are, filled: what rendering without hints gives.
-pub struct Unhinted<'t, 'a>(pub &'t Teacher<'a>);
+pub struct Unhinted<'t>(pub &'t Teacher);
 
-impl Source for Unhinted<'_, '_> {
+impl Source for Unhinted<'_> {
     fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
         Ok(Box::new(UnhintedAt { teacher: self.0, ppem: ppem.into() }))
     }
 }
 
-struct UnhintedAt<'t, 'a> {
-    teacher: &'t Teacher<'a>,
+struct UnhintedAt<'t> {
+    teacher: &'t Teacher,
     ppem: f32,
 }
 
-impl SourceAt for UnhintedAt<'_, '_> {
+impl SourceAt for UnhintedAt<'_> {
     fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
-        Ok(self.teacher.unhinted(gid, self.ppem)?.rasterize())
+        self.teacher.unhinted(gid, self.ppem)?.rasterize()
     }
 }
 
@@ -71,8 +71,13 @@ impl Neural {
     /// # Errors
     ///
     /// `MissingGlyph` for a glyph without a model, `Malformed` for a damaged one.
-    pub fn new(font: &Font<'_>, gids: &[u16]) -> Result<Self, Error> {
-        Ok(Self(gids.iter().map(|&gid| Ok((gid, font.glyph(gid)?))).collect::<Result<_, Error>>()?))
+    pub fn new(font: &Font, gids: &[u16]) -> Result<Self, Error> {
+        // A tool may take its time, for one of the paper's networks, say.
+        let mut limits = Limits::default();
+        (limits.decoded_bytes, limits.work) = (1 << 30, u64::MAX);
+        let mut decoder = Decoder::new(font, limits);
+        let glyphs = gids.iter().map(|&gid| Ok((gid, decoder.glyph(gid.into())?)));
+        Ok(Self(glyphs.collect::<Result<_, Error>>()?))
     }
 }
 
@@ -91,9 +96,6 @@ struct NeuralAt<'n> {
 impl SourceAt for NeuralAt<'_> {
     fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
         let glyph = self.glyphs.get(&gid).ok_or(Error::MissingGlyph(gid))?;
-        let placement = glyph.placement(self.ppem)?;
-        let mut pixels = vec![0; placement.area()];
-        let placement = glyph.render_into(self.ppem, &mut self.scratch, &mut pixels)?;
-        Ok(Bitmap { placement, pixels })
+        Ok(glyph.render_with(self.ppem, &mut self.scratch)?)
     }
 }

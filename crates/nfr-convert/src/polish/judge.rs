@@ -2,8 +2,9 @@
 
 use crate::error::Error;
 use crate::teach::{HintedGlyph, Lesson};
+use nfr::internals::Scratch;
 use nfr::internals::model::gridfit::GridFit;
-use nfr::internals::render::{Bitmap, Placement, Scratch};
+use nfr::{Bitmap, Placement};
 
 /// Sizes below this count more, in proportion: they have few pixels, and text is read at them.
 const SMALL: f32 = 32.0;
@@ -28,9 +29,9 @@ pub(super) struct Judge {
 }
 
 impl Judge {
-    pub(super) fn new(lesson: &Lesson) -> Self {
-        let sizes = lesson.sizes.iter().cloned().chain(lesson.beyond()).collect();
-        Self { sizes, scratch: Scratch::default(), pixels: Vec::new() }
+    pub(super) fn new(lesson: &Lesson) -> Result<Self, Error> {
+        let sizes = lesson.sizes.iter().cloned().chain(lesson.beyond()?).collect();
+        Ok(Self { sizes, scratch: Scratch::default(), pixels: Vec::new() })
     }
 
     /// One size.
@@ -61,7 +62,7 @@ impl Judge {
         let ppem = f32::from(*ppem);
         let place = model.placement(ppem)?;
         self.pixels.resize(place.area(), 0);
-        model.draw(ppem, place, &mut self.scratch, &mut self.pixels);
+        model.draw(ppem, place, &mut self.scratch, &mut self.pixels)?;
         let rows = self.pixels.chunks_exact(place.width.max(1) as usize).zip(0..);
         let within = rows.map(|(row, j)| row_error(row, bitmap, place.left, place.top - 1 - j)).sum::<u32>();
         let weight = f64::from((SMALL / ppem).max(1.0)) / 255.0;

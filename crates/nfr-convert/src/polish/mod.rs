@@ -29,6 +29,23 @@ impl Default for Polish {
     }
 }
 
+impl Polish {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter`, naming the first that makes no sense.
+    pub fn check(&self) -> Result<(), Error> {
+        if self.bit_worth.is_finite() && self.bit_worth >= 0.0 {
+            return Ok(());
+        }
+        Err(Error::InvalidParameter(format!(
+            "a bit is worth {} pixels; use a finite number, 0 or more",
+            self.bit_worth
+        )))
+    }
+}
+
 /// A number goes no farther than this from where a round finds it, in its own steps.
 const REACH: i32 = 8;
 /// A hinted position may be this far from a prediction that it is tried at, in steps.
@@ -52,7 +69,7 @@ pub fn polish(weights: &mut Weights, lesson: &Lesson, scale: Scale, options: Pol
     let mut bench = Bench {
         weights: std::mem::take(weights),
         model,
-        judge: Judge::new(lesson),
+        judge: Judge::new(lesson)?,
         scale,
         options,
         round: 0,

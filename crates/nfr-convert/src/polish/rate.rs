@@ -17,7 +17,7 @@ pub(super) fn embedding_bits(weight: i8) -> f64 {
 }
 
 fn round(knot: i16, scale: Scale, s: usize, steps: i32) -> i32 {
-    let units = i64::from(scale.units_per_em);
+    let units = i64::from(scale.units_per_em());
     let product = i64::from(knot) * scale.ppem_of(s) as i64 * i64::from(steps);
     (2 * product + units).div_euclid(2 * units) as i32
 }

@@ -2,8 +2,9 @@ use super::*;
 use crate::compare::metrics::Sums;
 use crate::samples::lessons;
 use crate::start::{Capacity, Draft};
-use nfr::internals::model::Target;
-use nfr::internals::render::{Bitmap, Scratch};
+use nfr::Bitmap;
+use nfr::Target;
+use nfr::internals::Scratch;
 
 fn first_guess(lesson: &Lesson, scale: Scale, target: Target) -> Weights {
     let mut weights = Draft::from_lesson(lesson, scale, target, Capacity::default(), 1).quantise();
@@ -16,7 +17,7 @@ fn first_guess(lesson: &Lesson, scale: Scale, target: Target) -> Weights {
 fn draw(model: &GridFit, ppem: f32) -> Bitmap {
     let placement = model.placement(ppem).unwrap();
     let mut pixels = vec![0; placement.area()];
-    model.draw(ppem, placement, &mut Scratch::default(), &mut pixels);
+    model.draw(ppem, placement, &mut Scratch::default(), &mut pixels).unwrap();
     Bitmap { placement, pixels }
 }
 

@@ -39,8 +39,8 @@ impl Predictor {
     ///
     /// As the teacher's.
     pub(super) fn new(
-        teacher: &Teacher<'_>,
-        sizes: &[TeacherAt<'_, '_>],
+        teacher: &Teacher,
+        sizes: &[TeacherAt],
         scale: Scale,
         gids: &[u16],
     ) -> Result<Self, Error> {
@@ -68,19 +68,24 @@ impl Predictor {
     }
 
     /// Adds the sizes that are not known to a lesson that has the known ones.
-    pub(super) fn complete(&self, lesson: &mut Lesson) {
+    ///
+    /// # Errors
+    ///
+    /// As [`Outline::rasterize`](crate::outline::Outline::rasterize).
+    pub(super) fn complete(&self, lesson: &mut Lesson) -> Result<(), Error> {
         if self.wanted.is_empty() {
-            return;
+            return Ok(());
         }
         let rows: Vec<&[[f32; 2]]> = lesson.sizes.iter().map(|size| size.points.as_slice()).collect();
         let axes = motions(&lesson.outline.points, &rows);
         for wanted in &self.wanted {
             let [x, y] = [0, 1].map(|axis| axes[axis].at(&wanted.view, &wanted.zones[axis]));
             let points: Vec<[f32; 2]> = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-            let bitmap = lesson.outline.with_points(&points).rasterize();
+            let bitmap = lesson.outline.with_points(&points)?.rasterize()?;
             lesson.sizes.push(HintedGlyph { ppem: wanted.ppem, points, bitmap, predicted: true });
         }
         lesson.sizes.sort_by_key(|size| size.ppem);
+        Ok(())
     }
 
     /// The sizes that are known.

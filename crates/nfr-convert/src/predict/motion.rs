@@ -1,5 +1,7 @@
 //! The levels of one outline along one axis, and where they go at a size that is not known.
 
+use std::collections::HashMap;
+
 use super::rule::{View, Vote, best, offer};
 use super::zones::Zone;
 
@@ -7,6 +9,8 @@ use super::zones::Zone;
 const LEAN_ON_ONE: f64 = 2.0;
 const LEAN_ON_TWO: f64 = 3.0;
 const LEAN_ON_ZONE: f64 = 3.0;
+/// So many tracks, the surest ones, may be leant on; few glyphs have more along an axis.
+const MOST_BASES: usize = 64;
 /// What mixing the moves at the neighbouring sizes is worth: a rule that fails at three near sizes is worse.
 const MIXING: f64 = -24.0;
 /// Moves below this (pixels) are rounding: the axis is not hinted.
@@ -19,6 +23,14 @@ pub(super) struct Track {
     pub(super) plain: f64,
     /// In pixels, at each known size.
     pub(super) hinted: Vec<f64>,
+}
+
+impl Track {
+    /// The same for tracks that are equal, and for no others.
+    pub(super) fn key(&self) -> Vec<u64> {
+        // Adding 0 makes −0 of it, too.
+        std::iter::once(&self.plain).chain(&self.hinted).map(|v| (v + 0.0).to_bits()).collect()
+    }
 }
 
 /// Where a track goes at the wanted size (pixels), and how sure that is (the logarithm of a share).
@@ -40,13 +52,14 @@ impl Motion {
     /// Sorts points into tracks: `plain` in em, `hinted` in pixels by known size.
     pub(super) fn new(plain: &[f32], hinted: &[Vec<f32>]) -> Self {
         let mut tracks: Vec<Track> = Vec::new();
+        let mut known = HashMap::new();
         let track_of = plain
             .iter()
             .enumerate()
             .map(|(point, plain)| {
                 let hinted = hinted.iter().map(|row| f64::from(row[point])).collect();
                 let track = Track { plain: f64::from(*plain), hinted };
-                tracks.iter().position(|known| *known == track).unwrap_or_else(|| {
+                *known.entry(track.key()).or_insert_with(|| {
                     tracks.push(track);
                     tracks.len() - 1
                 })
@@ -75,7 +88,8 @@ impl Motion {
     }
 }
 
-/// Finds where tracks go: the surest first, and then those that lean on them.
+/// Finds where tracks go: the surest first, and then those that lean on them. The work grows with the number of tracks,
+/// not with its cube.
 pub(super) fn settle(tracks: &[Track], view: &View, zones: &[Zone]) -> Vec<Place> {
     let mut votes: Vec<Vec<Vote>> = tracks.iter().map(|track| alone(track, view)).collect();
     let mut scratch = Vec::new();
@@ -89,11 +103,12 @@ pub(super) fn settle(tracks: &[Track], view: &View, zones: &[Zone]) -> Vec<Place
         let (vote, sure) = best(votes);
         vote.evidence + sure
     };
-    while let Some((slot, _)) = open
-        .iter()
-        .enumerate()
-        .map(|(slot, track)| (slot, confidence(&votes[*track])))
-        .max_by(|a, b| a.1.total_cmp(&b.1))
+    while settled.len() < MOST_BASES
+        && let Some((slot, _)) = open
+            .iter()
+            .enumerate()
+            .map(|(slot, track)| (slot, confidence(&votes[*track])))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
     {
         let next = open.swap_remove(slot);
         let (vote, sure) = best(&votes[next]);
@@ -106,6 +121,10 @@ pub(super) fn settle(tracks: &[Track], view: &View, zones: &[Zone]) -> Vec<Place
             }
         }
         settled.push(next);
+    }
+    for track in open {
+        let (vote, sure) = best(&votes[track]);
+        places[track] = Place { at: vote.at, sure };
     }
     places
 }

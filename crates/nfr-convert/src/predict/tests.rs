@@ -7,7 +7,7 @@ use super::motion::{Motion, Place};
 use super::rule::Vote;
 use super::*;
 use crate::compare::metrics::Sums;
-use nfr::internals::model::Target;
+use nfr::Target;
 
 /// Every second size, as in a conversion that leaves the others out.
 fn known() -> Vec<u16> {
@@ -145,7 +145,7 @@ fn errors(name: &str) -> [f64; 2] {
     let teacher = Teacher::new(&font, Target::Smooth).unwrap();
     let gid = |c: char| font.cmap().unwrap().map_codepoint(c).unwrap().to_u32() as u16;
     let gids: Vec<u16> = ('!'..='~').map(gid).collect();
-    let scale = Scale { units_per_em: teacher.units_per_em(), first_ppem: 8, last_ppem: 64 };
+    let scale = Scale::new(teacher.units_per_em(), 8, 64).unwrap();
     // The predictor is given the teacher at even sizes and never hears of the others.
     let shown: Vec<_> = known().iter().map(|size| teacher.at(*size).unwrap()).collect();
     let predictor = Predictor::new(&teacher, &shown, scale, &gids).unwrap();
@@ -153,12 +153,12 @@ fn errors(name: &str) -> [f64; 2] {
     let mut sums = [Sums::default(); 2];
     for gid in gids {
         let mut lesson = crate::teach::lesson(&teacher, &shown, gid).unwrap();
-        predictor.complete(&mut lesson);
+        predictor.complete(&mut lesson).unwrap();
         assert!(lesson.sizes.iter().map(|size| size.ppem).eq(8..=64));
         for (size, truth) in lesson.sizes.iter().filter(|size| size.predicted).zip(&hidden) {
-            let truth = truth.hinted(gid).unwrap().rasterize();
+            let truth = truth.hinted(gid).unwrap().rasterize().unwrap();
             sums[0].add(&truth, &size.bitmap);
-            sums[1].add(&truth, &teacher.unhinted(gid, size.ppem.into()).unwrap().rasterize());
+            sums[1].add(&truth, &teacher.unhinted(gid, size.ppem.into()).unwrap().rasterize().unwrap());
         }
     }
     sums.map(|sums| sums.mae())

@@ -23,7 +23,7 @@ pub(super) struct Zone {
 /// Counts levels, glyph by glyph.
 #[derive(Debug, Default)]
 pub(super) struct Census {
-    /// By their bits, which order them the same way everywhere.
+    /// By their keys, which order them the same way everywhere.
     counts: BTreeMap<Vec<u64>, (usize, Track)>,
 }
 
@@ -33,8 +33,7 @@ impl Census {
         for track in &glyph.tracks {
             let whole = track.hinted.iter().filter(|at| at.fract() == 0.0).count();
             if whole as f64 >= SNAPPED * track.hinted.len() as f64 {
-                let key = std::iter::once(&track.plain).chain(&track.hinted).map(|v| v.to_bits()).collect();
-                self.counts.entry(key).or_insert_with(|| (0, track.clone())).0 += 1;
+                self.counts.entry(track.key()).or_insert_with(|| (0, track.clone())).0 += 1;
             }
         }
     }

@@ -9,8 +9,8 @@ use super::coverage::{SLOPE_REACH, samples_per_pixel};
 use crate::error::Error;
 use crate::start::Draft;
 use crate::teach::{HintedGlyph, Lesson};
+use nfr::Placement;
 use nfr::internals::model::gridfit::{DEFORM_NODES, GridAxis, GridFit};
-use nfr::internals::render::Placement;
 
 /// Groups that the sizes are dealt into, each one a spread over the whole range.
 pub(super) const GROUPS: usize = 8;

@@ -4,20 +4,25 @@
 use burn::tensor::{Device, Tensor, TensorData};
 
 use super::batch::Extent;
+use crate::error::Error;
 use crate::start::Draft;
 use crate::teach::Lesson;
 
 /// A lesson and a first guess with the plain glyph at larger sizes after the hinted ones.
-pub(super) fn extended(lesson: &Lesson, draft: &Draft, units: f32) -> (Lesson, Draft) {
+///
+/// # Errors
+///
+/// As [`Lesson::beyond`].
+pub(super) fn extended(lesson: &Lesson, draft: &Draft, units: f32) -> Result<(Lesson, Draft), Error> {
     let (mut lesson, mut draft) = (lesson.clone(), draft.clone());
-    for plain in lesson.beyond() {
+    for plain in lesson.beyond()? {
         for (hinted, knots) in draft.hinted.iter_mut().zip(&draft.knots) {
             hinted.extend(knots.iter().map(|knot| f32::from(*knot) / units * f32::from(plain.ppem)));
         }
         draft.embedding.resize(draft.embedding.len() + draft.rank, 0.0);
         lesson.sizes.push(plain);
     }
-    (lesson, draft)
+    Ok((lesson, draft))
 }
 
 /// Takes the sizes after the first `sizes` off a draft again.

@@ -6,7 +6,7 @@ use super::batch::Extent;
 use super::field::hinted_tensors;
 use crate::start::Draft;
 use crate::teach::Lesson;
-use nfr::internals::render::{Bitmap, Placement};
+use nfr::{Bitmap, Placement};
 
 /// Rows and columns at a bitmap's border whose pixels are all at most this, of 255, are not worth drawing.
 const FAINT: u8 = 2;

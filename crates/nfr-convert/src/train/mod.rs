@@ -54,6 +54,38 @@ impl Default for Schedule {
     }
 }
 
+impl Schedule {
+    /// Checks that a training can follow the schedule.
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter`, naming the first number that makes no sense.
+    pub fn check(&self) -> Result<(), Error> {
+        let wrong = |what: String| Err(Error::InvalidParameter(what));
+        if self.steps > MAX_STEPS {
+            return wrong(format!("{} training steps; use 0 to {MAX_STEPS}", self.steps));
+        }
+        if !(0.0..=1.0).contains(&self.rounded_from) {
+            return wrong(format!("rounding from {} of the steps on; use 0 to 1", self.rounded_from));
+        }
+        for (value, of) in [
+            (self.field_rate, "the field's learning rate"),
+            (self.warp_rate, "the warp's learning rate"),
+            (self.pattern_rate, "the patterns' learning rate"),
+            (self.embedding_rate, "the embedding's learning rate"),
+            (self.smoothness, "the field's smoothness"),
+        ] {
+            if !value.is_finite() || value < 0.0 {
+                return wrong(format!("{of} is {value}; use a finite number, 0 or more"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The table tells the steps in 16 bits.
+const MAX_STEPS: usize = u16::MAX as usize;
+
 /// burn's backends for the CPU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Backend {
@@ -96,7 +128,7 @@ impl<const D: usize> Moments<D> {
 ///
 /// # Errors
 ///
-/// `Malformed` if a first guess contradicts itself.
+/// `Malformed` if a first guess contradicts itself, `InvalidParameter` if the training diverges, and as [`Outline::rasterize`](crate::outline::Outline::rasterize).
 pub fn train(
     lessons: &[&Lesson],
     drafts: &mut [Draft],
@@ -106,9 +138,9 @@ pub fn train(
 ) -> Result<(), Error> {
     let device = backend.device().autodiff();
     let models = drafts.iter().map(|d| GridFit::new(&d.quantise(), scale)).collect::<Result<Vec<_>, _>>()?;
-    let units = f32::from(scale.units_per_em);
-    let (lessons, mut longer): (Vec<_>, Vec<_>) =
-        lessons.iter().zip(drafts.iter()).map(|(lesson, draft)| extended(lesson, draft, units)).unzip();
+    let units = f32::from(scale.units_per_em());
+    let longer = lessons.iter().zip(drafts.iter()).map(|(lesson, draft)| extended(lesson, draft, units));
+    let (lessons, mut longer): (Vec<_>, Vec<_>) = longer.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     let extent = Extent::of(&longer, lessons.first().map_or(0, |lesson| lesson.sizes.len()));
     let mut groups = (0..GROUPS)
         .map(|k| Group::new(&lessons, &longer, &models, units, extent, k, &device))
@@ -162,6 +194,12 @@ pub fn train(
     weights.store(&mut longer, extent);
     for (draft, mut longer) in drafts.iter_mut().zip(longer) {
         beyond::cut(&mut longer, scale.sizes());
+        // Rounding would make zeros of such numbers, and a blank glyph of the model.
+        if !longer.is_finite() {
+            return Err(Error::InvalidParameter(
+                "the training came to numbers that are not finite; use lower learning rates".into(),
+            ));
+        }
         *draft = longer;
     }
     Ok(())

@@ -4,9 +4,10 @@ use crate::outline::Outline;
 use crate::samples::lessons;
 use crate::start::Capacity;
 use crate::teach::HintedGlyph;
-use nfr::internals::model::Target;
+use nfr::Target;
+use nfr::internals::Scratch;
 use nfr::internals::model::gridfit::GridFit;
-use nfr::internals::render::{Bitmap, Placement, Scratch};
+use nfr::{Bitmap, Placement};
 use skrifa::outline::OutlinePen;
 
 fn drafts(lessons: &[Lesson], scale: Scale, target: Target) -> Vec<Draft> {
@@ -21,7 +22,7 @@ fn mae(lesson: &Lesson, draft: &Draft, scale: Scale) -> f64 {
         let ppem = f32::from(hinted.ppem);
         let placement = model.placement(ppem).unwrap();
         let mut pixels = vec![0; placement.area()];
-        model.draw(ppem, placement, &mut Scratch::default(), &mut pixels);
+        model.draw(ppem, placement, &mut Scratch::default(), &mut pixels).unwrap();
         sums.add(&hinted.bitmap, &Bitmap { placement, pixels });
     }
     sums.mae()
@@ -102,7 +103,9 @@ fn any_number_of_sizes_is_trained() {
     for count in 1..=9 {
         let (mut lessons, scale) = lessons("g.", Target::Smooth);
         lessons.iter_mut().for_each(|l| l.sizes.truncate(count));
-        let scale = Scale { last_ppem: scale.first_ppem + count as u16 - 1, ..scale };
+        let scale =
+            Scale::new(scale.units_per_em(), scale.first_ppem(), scale.first_ppem() + count as u16 - 1)
+                .unwrap();
         let (before, after) =
             (drafts(&lessons, scale, Target::Smooth), trained(&lessons, scale, Target::Smooth, STEPS));
         let (before, after) = (mae(&lessons[0], &before[0], scale), mae(&lessons[0], &after[0], scale));
@@ -116,7 +119,7 @@ fn an_outline_without_height_is_trained_too() {
     outline.move_to(0.0, 0.25);
     outline.line_to(0.5, 0.25);
     outline.close();
-    let scale = Scale { units_per_em: 1000, first_ppem: 8, last_ppem: 9 };
+    let scale = Scale::new(1000, 8, 9).unwrap();
     let hinted = |ppem: u16| {
         let points = outline.points.iter().map(|p| p.map(|v| v * f32::from(ppem))).collect();
         let placement = Placement { left: 0, top: 3, width: 4, height: 1 };

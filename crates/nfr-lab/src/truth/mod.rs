@@ -17,8 +17,8 @@ use read_fonts::tables::head::Flags;
 use read_fonts::{FontRef, TableProvider};
 
 use super::Square;
-use nfr::internals::model::Target;
-use nfr::internals::render::{Bitmap, Placement};
+use nfr::Target;
+use nfr::{Bitmap, Placement};
 use nfr_convert::compare::metrics::coverage_at;
 use nfr_convert::error::Error;
 use nfr_convert::outline::Outline;
@@ -120,10 +120,10 @@ impl Truth {
             check_ink(&teacher, &gids)?;
             sets.push((teacher, gids));
         }
-        let mut hinters: Vec<Hinter<'_, '_>> =
+        let mut hinters: Vec<Hinter<'_>> =
             sets.iter().map(|(teacher, gids)| Hinter { teacher, gids, sizes: BTreeMap::new() }).collect();
         let sizes = sides.map(|side| common_size(&mut hinters, side)).collect::<Result<Vec<_>, _>>()?;
-        let truth = |(hinter, (font, _)): (&mut Hinter<'_, '_>, &(FontRef<'_>, &[u16]))| {
+        let truth = |(hinter, (font, _)): (&mut Hinter<'_>, &(FontRef<'_>, &[u16]))| {
             let mut warnings = whole_size_warning(font)?;
             let mut drawn = BTreeMap::new();
             for size in &sizes {
@@ -189,8 +189,8 @@ impl Truth {
 }
 
 /// The hinted outlines of a set, drawn once per size: the rule asks for the same sizes again and again.
-struct Hinter<'t, 'a> {
-    teacher: &'t Teacher<'a>,
+struct Hinter<'t> {
+    teacher: &'t Teacher,
     gids: &'t [u16],
     sizes: BTreeMap<u16, Hinted>,
 }
@@ -201,7 +201,7 @@ struct Hinted {
     warnings: Vec<String>,
 }
 
-impl Hinter<'_, '_> {
+impl Hinter<'_> {
     fn at(&mut self, ppem: u16) -> Result<&Hinted, Error> {
         if !self.sizes.contains_key(&ppem) {
             let hinted = self.hint(ppem)?;
@@ -237,14 +237,14 @@ impl Hinter<'_, '_> {
         warnings.extend(hinted.warnings.iter().cloned());
         let pair = |(outline, &gid): (&Outline, &u16)| {
             let plain = teacher.unhinted(gid, ppem.into())?;
-            Ok(Pair { hinted: framed(outline), plain: framed(&plain) })
+            Ok(Pair { hinted: framed(outline)?, plain: framed(&plain)? })
         };
         hinted.outlines.iter().zip(gids).map(pair).collect()
     }
 }
 
 /// The size for a box, at which all sets fit it together.
-fn common_size(hinters: &mut [Hinter<'_, '_>], side: usize) -> Result<TruthSize, Error> {
+fn common_size(hinters: &mut [Hinter<'_>], side: usize) -> Result<TruthSize, Error> {
     let mut bounds = |ppem| {
         hinters.iter_mut().try_fold([0; 4], |all: [i32; 4], hinter| {
             let own = hinter.at(ppem)?.bounds;
@@ -282,16 +282,16 @@ fn frame(outline: &Outline) -> Placement {
 }
 
 /// An outline's coverage in its frame.
-fn framed(outline: &Outline) -> Bitmap {
-    let (drawn, placement) = (outline.rasterize(), frame(outline));
+fn framed(outline: &Outline) -> Result<Bitmap, Error> {
+    let (drawn, placement) = (outline.rasterize()?, frame(outline));
     let pixels = (0..placement.height)
         .flat_map(|row| (0..placement.width).map(move |column| (i64::from(column), i64::from(row))))
         .map(|(x, y)| coverage_at(&drawn, x + i64::from(placement.left), y - i64::from(placement.top)))
         .collect();
-    Bitmap { placement, pixels }
+    Ok(Bitmap { placement, pixels })
 }
 
-fn check_ink(teacher: &Teacher<'_>, gids: &[u16]) -> Result<(), Error> {
+fn check_ink(teacher: &Teacher, gids: &[u16]) -> Result<(), Error> {
     for &gid in gids {
         if !teacher.unhinted_em(gid)?.points.is_empty() {
             return Ok(());

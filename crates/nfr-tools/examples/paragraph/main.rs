@@ -27,8 +27,6 @@ use std::time::Instant;
 use clap::Parser;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::ppem::PpemList;
-use skrifa::MetadataProvider;
-use skrifa::instance::{LocationRef, Size};
 
 use layout::{Placed, Shaped, shape};
 use picture::{Ink, Picture};
@@ -117,7 +115,7 @@ fn check_models(pair: &FontPair<'_>, text: &str, shaped: &Shaped) -> Result<(), 
     if shaped.glyphs().is_empty() {
         return Err("the text has nothing to draw; give another one with --text".into());
     }
-    if let Some(glyph) = shaped.glyphs().iter().find(|glyph| !pair.font().has_model(glyph.gid)) {
+    if let Some(glyph) = shaped.glyphs().iter().find(|glyph| !pair.font().has_model(glyph.gid.into())) {
         let character = text[glyph.at..].chars().next().unwrap_or_default();
         return Err(format!(
             "the character {character:?} (glyph {}) has no model; convert the font with it, or change --text",
@@ -133,8 +131,8 @@ fn check_models(pair: &FontPair<'_>, text: &str, shaped: &Shaped) -> Result<(), 
 fn blocks(pair: &FontPair<'_>, shaped: &Shaped, args: &Args) -> (Vec<Block>, usize) {
     let mut top = MARGIN;
     let blocks = args.ppem.sizes().iter().map(|&ppem| {
-        let metrics = pair.original().metrics(Size::new(ppem.into()), LocationRef::default());
-        let height = metrics.ascent - metrics.descent + metrics.leading;
+        let metrics = pair.font().line_metrics(ppem.into());
+        let height = metrics.ascent - metrics.descent + metrics.line_gap;
         let block = Block {
             ppem,
             lines: shaped.lines(i32::from(args.width) * units_per_em(pair) / i32::from(ppem)),
@@ -169,7 +167,7 @@ impl Block {
     fn draw(
         &self,
         pair: &FontPair<'_>,
-        renderer: &mut Renderer<'_>,
+        renderer: &mut Renderer,
         picture: &mut Picture,
         columns: &Range<i64>,
         left: i64,
@@ -194,13 +192,13 @@ impl Block {
         let (ppem, darkness) = CAPTION;
         let shaped = shape(pair.original().data().as_bytes(), &format!("{name}, {} ppem", self.ppem))?;
         let baseline = (self.top + usize::from(ppem)) as i64;
-        let mut plain = Renderer::unhinted(pair, ppem);
+        let mut plain = Renderer::unhinted(pair, ppem)?;
         let line = shaped.lines(i32::MAX).concat();
         At { left, baseline, ppem, darkness }.line(pair, &line, &mut plain, picture, columns)
     }
 
     /// How many glyphs a second each renderer draws, as a line of text.
-    fn speed(&self, pair: &FontPair<'_>, renderers: &mut [Renderer<'_>]) -> Result<String, Box<dyn Error>> {
+    fn speed(&self, pair: &FontPair<'_>, renderers: &mut [Renderer]) -> Result<String, Box<dyn Error>> {
         let glyphs: Vec<(u16, f32)> = self
             .lines
             .iter()
@@ -240,7 +238,7 @@ impl At {
         &self,
         pair: &FontPair<'_>,
         line: &[Placed],
-        renderer: &mut Renderer<'_>,
+        renderer: &mut Renderer,
         picture: &mut Picture,
         columns: &Range<i64>,
     ) -> Result<(), Box<dyn Error>> {

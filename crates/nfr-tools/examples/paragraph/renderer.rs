@@ -2,76 +2,60 @@
 
 use std::error::Error;
 
-use nfr::{Placement, Rasterizer, Setting};
+use nfr::{BitmapRef, DrawOptions, Placement, Rasterizer};
 use nfr_convert::compare::fonts::FontPair;
-use skrifa::MetadataProvider;
-use skrifa::instance::{LocationRef, Size};
-use skrifa::outline::{DrawSettings, HintingInstance};
+use nfr_convert::open::owned;
+use skrifa::ScalerFont;
 
-use super::skrifa_zeno::{SkrifaZeno, hinting};
+use super::skrifa_zeno::{SkrifaZeno, hint_options, hinted, outlines};
 
 /// A renderer at one size.
-pub(crate) enum Renderer<'a> {
+pub(crate) enum Renderer {
     /// From the models.
-    Neural { rasterizer: Box<Rasterizer<'a>>, ppem: f32, pixels: Vec<u8> },
-    /// From the outlines, hinted by the font's programs.
-    Hinted { renderer: SkrifaZeno<'a>, hinting: Box<HintingInstance> },
-    /// From the outlines as they are.
-    Unhinted { renderer: SkrifaZeno<'a>, size: Size },
+    Neural { rasterizer: Box<Rasterizer>, ppem: f32 },
+    /// From the outlines.
+    Outlines { name: &'static str, renderer: SkrifaZeno, scaler: Box<ScalerFont> },
 }
 
-impl<'a> Renderer<'a> {
+impl Renderer {
     /// All three, the models first.
-    pub(crate) fn all(pair: &'a FontPair<'a>, ppem: u16) -> Result<[Self; 3], Box<dyn Error>> {
-        let outlines = pair.original().outline_glyphs();
-        let hinting = hinting(&outlines, ppem, pair.font().target())?;
-        let neural = Self::Neural {
-            rasterizer: Box::new(Rasterizer::new(pair.font())),
-            ppem: ppem.into(),
-            pixels: Vec::new(),
-        };
-        let hinted = Self::Hinted { renderer: SkrifaZeno::new(outlines.clone()), hinting: Box::new(hinting) };
-        Ok([neural, hinted, Self::unhinted(pair, ppem)])
+    pub(crate) fn all(pair: &FontPair<'_>, ppem: u16) -> Result<[Self; 3], Box<dyn Error>> {
+        let neural = Self::Neural { rasterizer: Box::new(Rasterizer::new(pair.font())), ppem: ppem.into() };
+        let outlines = outlines(owned(pair.original())?);
+        let scaler = hinted(outlines, ppem, hint_options(pair.font().target())?)?;
+        Ok([neural, Self::of_outlines("skrifa hinted", scaler), Self::unhinted(pair, ppem)?])
     }
 
     /// The one that needs nothing but outlines.
-    pub(crate) fn unhinted(pair: &'a FontPair<'a>, ppem: u16) -> Self {
-        let outlines = pair.original().outline_glyphs();
-        Self::Unhinted { renderer: SkrifaZeno::new(outlines), size: Size::new(ppem.into()) }
+    pub(crate) fn unhinted(pair: &FontPair<'_>, ppem: u16) -> Result<Self, Box<dyn Error>> {
+        let outlines = outlines(owned(pair.original())?);
+        Ok(Self::of_outlines("unhinted", ScalerFont::force_unhinted(outlines, Some(ppem.into()))))
+    }
+
+    fn of_outlines(name: &'static str, scaler: ScalerFont) -> Self {
+        Self::Outlines { name, renderer: SkrifaZeno::new(), scaler: Box::new(scaler) }
     }
 
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Neural { .. } => "neural",
-            Self::Hinted { .. } => "skrifa hinted",
-            Self::Unhinted { .. } => "unhinted",
+            Self::Outlines { name, .. } => name,
         }
     }
 
     /// Draws a glyph's coverage with the pen at `x`, a part of a pixel, on the baseline.
     pub(crate) fn draw(&mut self, gid: u16, x: f32) -> Result<(Placement, &[u8]), Box<dyn Error>> {
-        let (place, pixels) = match self {
-            Self::Neural { rasterizer, ppem, pixels } => {
-                let setting = Setting { pen: [x, 0.0], ..Setting::from(*ppem) };
-                let place = match rasterizer.render_into(gid, setting, pixels) {
-                    // Grows to the largest glyph.
-                    Err(nfr::Error::InvalidParameter(_)) => {
-                        let area = rasterizer.placement(gid, setting)?.area();
-                        pixels.resize(pixels.len().max(area), 0);
-                        rasterizer.render_into(gid, setting, pixels)?
-                    }
-                    place => place?,
-                };
-                return Ok((place, &pixels[..place.area()]));
+        match self {
+            Self::Neural { rasterizer, ppem } => {
+                let options = DrawOptions::new(*ppem).with_offset([x, 0.0]);
+                let BitmapRef { placement, pixels, .. } = rasterizer.draw(gid.into(), options)?;
+                Ok((placement, pixels))
             }
-            Self::Hinted { renderer, hinting } => {
-                renderer.draw(gid, DrawSettings::hinted(hinting, false), x)?
+            Self::Outlines { renderer, scaler, .. } => {
+                let (place, pixels) = renderer.draw(scaler, gid, x)?;
+                let zeno::Placement { left, top, width, height } = place;
+                Ok((Placement { left, top, width, height }, pixels))
             }
-            Self::Unhinted { renderer, size } => {
-                renderer.draw(gid, DrawSettings::unhinted(*size, LocationRef::default()), x)?
-            }
-        };
-        let place = Placement { left: place.left, top: place.top, width: place.width, height: place.height };
-        Ok((place, pixels))
+        }
     }
 }

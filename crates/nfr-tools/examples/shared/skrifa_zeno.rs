@@ -4,47 +4,41 @@
 use std::error::Error;
 
 use nfr::Target;
-use skrifa::instance::{LocationRef, Size};
-use skrifa::outline::{
-    DrawSettings, Engine, Hinting, HintingInstance, HintingOptions, OutlineGlyphCollection, OutlinePen,
-    SmoothMode, Target as SkrifaTarget,
+use skrifa::font::Font;
+use skrifa::font::glyph::GlyphSourceOrder;
+use skrifa::{
+    DrawMemory, GlyphId, HintEngine, HintOptions, PathSink, RasterTarget, ScalerFont, ScalerSource,
 };
 use zeno::{Command, Mask, Origin, PathBuilder, Placement, Scratch};
 
 /// Draws glyphs from their outlines.
-pub(crate) struct SkrifaZeno<'a> {
-    outlines: OutlineGlyphCollection<'a>,
+pub(crate) struct SkrifaZeno {
     path: Path,
     memory: Vec<u8>,
     scratch: Scratch,
     pixels: Vec<u8>,
 }
 
-impl<'a> SkrifaZeno<'a> {
-    /// Draws these outlines.
-    pub(crate) fn new(outlines: OutlineGlyphCollection<'a>) -> Self {
-        Self {
-            outlines,
-            path: Path::default(),
-            memory: Vec::new(),
-            scratch: Scratch::new(),
-            pixels: Vec::new(),
-        }
+impl SkrifaZeno {
+    pub(crate) fn new() -> Self {
+        Self { path: Path::default(), memory: Vec::new(), scratch: Scratch::new(), pixels: Vec::new() }
     }
 
-    /// Draws a glyph's coverage, 0–255, top row first, with the pen at `x` pixels.
-    pub(crate) fn draw<'s>(
-        &'s mut self,
+    /// Draws a glyph's coverage, 0–255, top row first, with the pen at `x` pixels. Font, size and hinting are the
+    /// scaler's.
+    pub(crate) fn draw(
+        &mut self,
+        scaler: &ScalerFont,
         gid: u16,
-        settings: DrawSettings<'s>,
         x: f32,
-    ) -> Result<(Placement, &'s [u8]), Box<dyn Error>> {
-        let glyph = self.outlines.get(gid.into()).ok_or_else(|| format!("glyph {gid} is not in the font"))?;
-        let needed = glyph.draw_memory_size(Hinting::Embedded);
+    ) -> Result<(Placement, &[u8]), Box<dyn Error>> {
+        let outline =
+            scaler.outline(GlyphId::from(gid)).ok_or_else(|| format!("glyph {gid} is not in the font"))?;
+        let needed = outline.required_memory_size();
         self.memory.resize(self.memory.len().max(needed), 0);
         self.path.0.clear();
-        glyph
-            .draw(settings.with_memory(Some(&mut self.memory)), &mut self.path)
+        outline
+            .draw(DrawMemory::Buffer(&mut self.memory), &mut self.path)
             .map_err(|e| format!("glyph {gid} cannot be drawn ({e})"))?;
         let pixels = &mut self.pixels;
         let place = Mask::with_scratch(&self.path.0, &mut self.scratch)
@@ -64,7 +58,7 @@ impl<'a> SkrifaZeno<'a> {
 #[derive(Default)]
 struct Path(Vec<Command>);
 
-impl OutlinePen for Path {
+impl PathSink for Path {
     fn move_to(&mut self, x: f32, y: f32) {
         self.0.move_to([x, y]);
     }
@@ -82,25 +76,48 @@ impl OutlinePen for Path {
     }
 }
 
-/// The hinting that the models were trained on: the font's own programs, as in [`nfr_convert::teacher`].
-pub(crate) fn hinting_options(target: Target) -> HintingOptions {
-    let smooth =
-        |mode| SkrifaTarget::Smooth { mode, symmetric_rendering: true, preserve_linear_metrics: false };
+/// The outlines of a font that the models were trained on, as in [`nfr_convert::teacher`].
+pub(crate) fn outlines(font: Font) -> ScalerSource {
+    ScalerSource::new(font, GlyphSourceOrder::BASE_OUTLINES)
+}
+
+/// The hinting that the models were trained on: the font's own programs, as in [`nfr_convert::teacher`]. A glyph whose
+/// program fails is drawn as the program left it.
+pub(crate) fn hint_options(target: Target) -> Result<HintOptions, Box<dyn Error>> {
     let target = match target {
-        Target::Smooth => smooth(SmoothMode::Normal),
-        Target::Mono => SkrifaTarget::Mono,
-        Target::Lcd => smooth(SmoothMode::Lcd),
+        Target::Smooth => RasterTarget::Normal,
+        Target::Mono => RasterTarget::Mono,
+        Target::Lcd => RasterTarget::Lcd,
+        other => return Err(format!("this example does not know the target {other}").into()),
     };
-    HintingOptions { engine: Engine::Interpreter, target }
+    Ok(HintOptions::interpreter()
+        .with_target(target)
+        .with_classic_cleartype(true)
+        .with_symmetric_rendering(true)
+        .with_preserve_linear_metrics(false)
+        .with_pedantic(false))
 }
 
 /// Sets hinting up for a size: runs the programs `fpgm` and `prep`.
-pub(crate) fn hinting(
-    outlines: &OutlineGlyphCollection<'_>,
+pub(crate) fn hinted(
+    outlines: ScalerSource,
     ppem: u16,
-    target: Target,
-) -> Result<HintingInstance, Box<dyn Error>> {
-    let size = Size::new(f32::from(ppem));
-    HintingInstance::new(outlines, size, LocationRef::default(), hinting_options(target))
-        .map_err(|e| format!("the original font's programs fail at {ppem} ppem ({e})").into())
+    options: HintOptions,
+) -> Result<ScalerFont, Box<dyn Error>> {
+    let scaler = ScalerFont::hinted(outlines, f32::from(ppem), options);
+    check(&scaler)?;
+    Ok(scaler)
+}
+
+/// Refuses a scaler that does not run the font's programs.
+pub(crate) fn check(scaler: &ScalerFont) -> Result<(), Box<dyn Error>> {
+    if scaler.hint_engine() == Some(HintEngine::TrueType) {
+        return Ok(());
+    }
+    let ppem = scaler.ppem().unwrap_or_default();
+    Err(match scaler.hinting_error() {
+        Some(e) => format!("the original font's programs fail at {ppem} ppem ({e})"),
+        None => format!("skrifa does not run the original font's programs at {ppem} ppem"),
+    }
+    .into())
 }

@@ -9,6 +9,7 @@
 
 #![allow(clippy::print_stdout)]
 
+mod buffer;
 mod cold;
 mod round;
 #[path = "../shared/skrifa_zeno.rs"]
@@ -63,7 +64,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let pair = FontPair::open(&original, 0, &neural)?;
     let gids = glyphs(&pair, &args.unicodes)?;
     let mut contestants = warm::contestants(&pair, &original)?;
-    contestants.extend(cold::contestants(&pair, &neural, &original)?);
+    contestants.extend(cold::contestants(&pair, neural.as_slice().into(), original.as_slice().into())?);
     if !args.json {
         println!("{}\n", table::title(&args.neural, gids.len(), args.rounds));
     }
@@ -90,7 +91,7 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 fn glyphs(pair: &FontPair<'_>, unicodes: &CodePoints) -> Result<Vec<u16>, Box<dyn Error>> {
     let selection = Selection { unicodes: unicodes.clone(), ..Selection::default() };
     let mut gids = selection.resolve(pair.original(), [])?;
-    gids.retain(|gid| pair.font().has_model(*gid));
+    gids.retain(|gid| pair.font().has_model((*gid).into()));
     if gids.is_empty() {
         return Err("none of these characters has a model; choose others with --unicodes".into());
     }

@@ -1,7 +1,7 @@
 //! Drawing at a size that has been drawn before. Opening the font and setting the size are not timed.
 //!
 //! - `nfr`: `Rasterizer::render_into` a buffer that is used again, the models decoded. The box is part of that call.
-//! - `skrifa_zeno`: skrifa with the hinting that the models learnt and an instance for the size, zeno with its
+//! - `skrifa_zeno`: skrifa with the hinting that the models learnt and a `ScalerFont` for the size, zeno with its
 //!   `Scratch`; path and pixels go to memory that is used again.
 //! - `swash`: one `Scaler` for all glyphs, hinted, and `Render::render_into` an image that is used again. Its hinting
 //!   is for subpixels and cannot be chosen, and its fonts are read by an older skrifa.
@@ -18,12 +18,13 @@ use freetype::face::LoadFlag;
 use freetype::{Face, Library, RenderMode};
 use nfr::{Rasterizer, Target};
 use nfr_convert::compare::fonts::FontPair;
-use skrifa::MetadataProvider;
-use skrifa::outline::{DrawSettings, HintingInstance, OutlineGlyphCollection};
+use nfr_convert::open::owned;
+use skrifa::{HintOptions, ScalerFont, ScalerSource};
 use swash::scale::{Render, ScaleContext, Source, image::Image};
 
+use super::buffer::{Buffer, Coverage};
 use super::round::Contestant;
-use super::skrifa_zeno::{SkrifaZeno, hinting};
+use super::skrifa_zeno::{SkrifaZeno, hint_options, hinted, outlines};
 
 /// A renderer that keeps what it can from one glyph to the next.
 trait Renderer {
@@ -31,7 +32,7 @@ trait Renderer {
     fn set_size(&mut self, ppem: u16, gids: &[u16]) -> Result<(), Box<dyn Error>>;
 
     /// Draws each glyph and shows its pixels.
-    fn draw(&mut self, gids: &[u16], show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>>;
+    fn draw(&mut self, gids: &[u16], show: impl FnMut(Coverage<'_>)) -> Result<(), Box<dyn Error>>;
 }
 
 /// Those that draw at a size that they have drawn before.
@@ -41,8 +42,11 @@ pub(crate) fn contestants<'a>(
 ) -> Result<Vec<Contestant<'a>>, Box<dyn Error>> {
     let target = pair.font().target();
     Ok(vec![
-        contestant("nfr", Nfr { rasterizer: Rasterizer::new(pair.font()), ppem: 0.0, pixels: Vec::new() }),
-        contestant("skrifa_zeno", Skrifa::new(pair.original().outline_glyphs(), target)),
+        contestant(
+            "nfr",
+            Nfr { rasterizer: Rasterizer::new(pair.font()), ppem: 0.0, buffer: Buffer::default() },
+        ),
+        contestant("skrifa_zeno", Skrifa::new(pair)?),
         contestant("swash", Swash::new(original)?),
         contestant("freetype", FreeType::new(original, target)?),
         contestant("fontdue", Fontdue::new(original)?),
@@ -58,8 +62,8 @@ fn contestant<'a>(name: &'static str, mut renderer: impl Renderer + 'a) -> Conte
             last = Some(ppem);
         }
         let start = Instant::now();
-        renderer.draw(black_box(gids), |pixels| {
-            black_box(pixels);
+        renderer.draw(black_box(gids), |coverage| {
+            black_box(coverage);
         })?;
         Ok(start.elapsed())
     })
@@ -68,61 +72,59 @@ fn contestant<'a>(name: &'static str, mut renderer: impl Renderer + 'a) -> Conte
 /// Whoever draws nothing has no place here.
 fn check_ink(renderer: &mut impl Renderer, gids: &[u16]) -> Result<(), Box<dyn Error>> {
     let mut inked = 0;
-    renderer.draw(gids, |pixels| inked += usize::from(pixels.iter().any(|coverage| *coverage > 0)))?;
+    renderer.draw(gids, |coverage| inked += usize::from(coverage.has_ink()))?;
     if 2 * inked < gids.len() {
         return Err(format!("only {inked} of {} glyphs have ink", gids.len()).into());
     }
     Ok(())
 }
 
-struct Nfr<'a> {
-    rasterizer: Rasterizer<'a>,
+struct Nfr {
+    rasterizer: Rasterizer,
     ppem: f32,
-    pixels: Vec<u8>,
+    buffer: Buffer,
 }
 
-impl Renderer for Nfr<'_> {
+impl Renderer for Nfr {
     fn set_size(&mut self, ppem: u16, gids: &[u16]) -> Result<(), Box<dyn Error>> {
         self.ppem = ppem.into();
-        for &gid in gids {
-            let area = self.rasterizer.placement(gid, self.ppem)?.area();
-            self.pixels.resize(self.pixels.len().max(area), 0);
-        }
+        self.buffer = Buffer::new(&mut self.rasterizer, &[ppem], gids)?;
         Ok(())
     }
 
-    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(Coverage<'_>)) -> Result<(), Box<dyn Error>> {
         for &gid in gids {
-            let place = self.rasterizer.render_into(gid, self.ppem, &mut self.pixels)?;
-            show(&self.pixels[..place.area()]);
+            show(self.buffer.draw(&mut self.rasterizer, gid, self.ppem)?);
         }
         Ok(())
     }
 }
 
-struct Skrifa<'a> {
-    outlines: OutlineGlyphCollection<'a>,
-    target: Target,
-    hinting: Option<HintingInstance>,
-    renderer: SkrifaZeno<'a>,
+struct Skrifa {
+    outlines: ScalerSource,
+    options: HintOptions,
+    scaler: Option<ScalerFont>,
+    renderer: SkrifaZeno,
 }
 
-impl<'a> Skrifa<'a> {
-    fn new(outlines: OutlineGlyphCollection<'a>, target: Target) -> Self {
-        Self { renderer: SkrifaZeno::new(outlines.clone()), outlines, target, hinting: None }
+impl Skrifa {
+    fn new(pair: &FontPair<'_>) -> Result<Self, Box<dyn Error>> {
+        let options = hint_options(pair.font().target())?;
+        let outlines = outlines(owned(pair.original())?);
+        Ok(Self { outlines, options, scaler: None, renderer: SkrifaZeno::new() })
     }
 }
 
-impl Renderer for Skrifa<'_> {
+impl Renderer for Skrifa {
     fn set_size(&mut self, ppem: u16, _: &[u16]) -> Result<(), Box<dyn Error>> {
-        self.hinting = Some(hinting(&self.outlines, ppem, self.target)?);
+        self.scaler = Some(hinted(self.outlines.clone(), ppem, self.options)?);
         Ok(())
     }
 
-    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
-        let hinting = self.hinting.as_ref().ok_or("no size is set")?;
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(Coverage<'_>)) -> Result<(), Box<dyn Error>> {
+        let scaler = self.scaler.as_ref().ok_or("no size is set")?;
         for &gid in gids {
-            show(self.renderer.draw(gid, DrawSettings::hinted(hinting, false), 0.0)?.1);
+            show(Coverage::packed(self.renderer.draw(scaler, gid, 0.0)?.1));
         }
         Ok(())
     }
@@ -148,7 +150,7 @@ impl Renderer for Swash<'_> {
         Ok(())
     }
 
-    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(Coverage<'_>)) -> Result<(), Box<dyn Error>> {
         let mut scaler = self.context.builder(self.font).size(self.ppem).hint(true).build();
         let render = Render::new(&[Source::Outline]);
         for &gid in gids {
@@ -157,7 +159,7 @@ impl Renderer for Swash<'_> {
             if !render.render_into(&mut scaler, gid, &mut self.image) {
                 return Err(format!("glyph {gid} cannot be drawn").into());
             }
-            show(&self.image.data);
+            show(Coverage::packed(&self.image.data));
         }
         Ok(())
     }
@@ -176,6 +178,7 @@ impl FreeType {
             Target::Smooth => LoadFlag::TARGET_NORMAL,
             Target::Mono => LoadFlag::TARGET_MONO,
             Target::Lcd => LoadFlag::TARGET_LCD,
+            other => return Err(format!("this example does not know the target {other}").into()),
         };
         let face = Library::init()?.new_memory_face(Rc::new(data.to_vec()), 0)?;
         Ok(Self { face, flags: LoadFlag::NO_AUTOHINT | target })
@@ -185,11 +188,11 @@ impl FreeType {
         Ok(self.face.set_pixel_sizes(0, ppem.into())?)
     }
 
-    pub(crate) fn draw(&self, gid: u16, show: &mut impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+    pub(crate) fn draw(&self, gid: u16, show: &mut impl FnMut(Coverage<'_>)) -> Result<(), Box<dyn Error>> {
         self.face.load_glyph(gid.into(), self.flags)?;
         // Grey coverage, whatever the hinting is for.
         self.face.glyph().render_glyph(RenderMode::Normal)?;
-        show(self.face.glyph().bitmap().buffer());
+        show(Coverage::packed(self.face.glyph().bitmap().buffer()));
         Ok(())
     }
 }
@@ -199,7 +202,7 @@ impl Renderer for FreeType {
         FreeType::set_size(self, ppem)
     }
 
-    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(Coverage<'_>)) -> Result<(), Box<dyn Error>> {
         gids.iter().try_for_each(|gid| FreeType::draw(self, *gid, &mut show))
     }
 }
@@ -222,9 +225,9 @@ impl Renderer for Fontdue {
         Ok(())
     }
 
-    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(&[u8])) -> Result<(), Box<dyn Error>> {
+    fn draw(&mut self, gids: &[u16], mut show: impl FnMut(Coverage<'_>)) -> Result<(), Box<dyn Error>> {
         for &gid in gids {
-            show(&self.font.rasterize_indexed(gid, self.ppem).1);
+            show(Coverage::packed(&self.font.rasterize_indexed(gid, self.ppem).1));
         }
         Ok(())
     }

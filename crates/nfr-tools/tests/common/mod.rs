@@ -3,7 +3,7 @@
 // Each test program uses a part of this.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use read_fonts::FontRef;
@@ -104,8 +104,13 @@ impl Directory {
     }
 }
 
+/// The bytes of a font in `fonts/`.
+pub fn font(name: &str) -> Vec<u8> {
+    std::fs::read(format!("{}/../../fonts/{name}.ttf", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
 pub fn sans() -> Vec<u8> {
-    std::fs::read(Path::new(SANS)).unwrap()
+    font("LiberationSans-Regular")
 }
 
 /// Liberation Sans without some tables, and with others added.

@@ -5,7 +5,7 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::compare::metrics::{coverage_at, union_box};
 use crate::error::Error;
-use nfr::internals::render::{Bitmap, Placement};
+use nfr::{Bitmap, Placement};
 
 pub(super) type Rgb = [u8; 3];
 pub(super) const INK: Rgb = [0, 0, 0];

@@ -3,7 +3,7 @@
 use super::canvas::enclosing;
 use crate::compare::source::SourceAt;
 use crate::error::Error;
-use nfr::internals::render::Bitmap;
+use nfr::Bitmap;
 
 /// Pixels between the glyphs of a specimen.
 const SPECIMEN_GAP: i64 = 2;
@@ -84,7 +84,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use nfr::internals::render::Placement;
+    use nfr::Placement;
 
     /// Every glyph is one pixel as dark as its number.
     struct Dots;

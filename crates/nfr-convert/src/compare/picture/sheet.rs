@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, enclosing};
 use super::letters;
 use crate::error::Error;
-use nfr::internals::render::{Bitmap, Placement};
+use nfr::{Bitmap, Placement};
 
 /// White space around and between everything, in pixels.
 const MARGIN: u64 = 12;

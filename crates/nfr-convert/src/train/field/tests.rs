@@ -5,9 +5,9 @@ use crate::samples::lessons;
 use crate::start::Capacity;
 use crate::teach::Lesson;
 use crate::train::batch::GROUPS;
-use nfr::internals::model::Target;
+use nfr::Target;
 use nfr::internals::model::gridfit::{GridFit, Scale, Weights};
-use nfr::internals::render::{Bitmap, Placement};
+use nfr::{Bitmap, Placement};
 
 /// Bitmaps have whole levels: half of one.
 const ROUNDING: f32 = 0.5 / 255.0;
@@ -47,9 +47,9 @@ fn largest_difference(text: &str, target: Target) -> (f32, usize) {
     drafts.iter_mut().for_each(shake);
     let stored: Vec<Weights> = drafts.iter().map(Draft::quantise).collect();
     let models: Vec<GridFit> = stored.iter().map(|w| GridFit::new(w, scale).unwrap()).collect();
-    let units = f32::from(scale.units_per_em);
+    let units = f32::from(scale.units_per_em());
     let (lessons, drafts): (Vec<Lesson>, Vec<Draft>) =
-        lessons.iter().zip(&drafts).map(|(l, d)| extended(l, d, units)).unzip();
+        lessons.iter().zip(&drafts).map(|(l, d)| extended(l, d, units).unwrap()).unzip();
     let lessons: Vec<Lesson> = lessons.iter().zip(&stored).map(|(l, w)| own_lesson(l, w, scale)).collect();
     let extent = Extent::of(&drafts, lessons[0].sizes.len());
     assert!(extent.sizes > scale.sizes(), "plain sizes are evaluated, too");

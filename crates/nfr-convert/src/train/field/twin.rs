@@ -2,11 +2,11 @@
 //! nothing kept between samples.
 
 use crate::train::coverage::{MIN_GRADIENT, MIN_SKEW, SLOPE_REACH, samples_per_pixel};
+use nfr::Placement;
 use nfr::internals::model::gridfit::{
     AxisWarp, DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, MIN_KNOT_GAP, PADDING, PATTERN_STEPS, Scale,
     WARP_STEPS, Weights,
 };
-use nfr::internals::render::Placement;
 
 /// A model at a size.
 pub(super) struct Twin<'a> {
@@ -17,7 +17,7 @@ pub(super) struct Twin<'a> {
 
 impl Twin<'_> {
     fn em(&self, units: i16) -> f64 {
-        f64::from(units) / f64::from(self.scale.units_per_em)
+        f64::from(units) / f64::from(self.scale.units_per_em())
     }
 
     /// The number of the trained size that this one is fitted as: it is less than half a pixel per em off, or half of

@@ -2,17 +2,15 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::composed::{COUNTS_AT, NO_SNAPS};
-use super::network::{self, Precision};
-use super::{
+use nfr::internals::model::compose::{Composed, Origin};
+use nfr::internals::model::gridfit::{Scale, Weights};
+use nfr::internals::table::composed::{COUNTS_AT, NO_SNAPS};
+use nfr::internals::table::{
     BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_PARTS, MAX_SNAP_BYTES, MINOR_VERSION,
     NETWORK_MINOR_VERSION, NETWORKS, OUTLINES_DROPPED, codec,
 };
+
 use crate::error::Error;
-use crate::model::Target;
-use crate::model::compose::{Composed, Origin};
-use crate::model::gridfit::{Scale, Weights};
-use crate::model::network::NetworkWeights;
 
 /// No packed model is longer than this: the table stores lengths in 16 bits.
 const MAX_MODEL_BYTES: usize = u16::MAX as usize;
@@ -35,10 +33,8 @@ pub struct GlyphModel {
 pub struct GlyphNetwork {
     /// The glyph.
     pub gid: u16,
-    /// Its numbers.
-    pub weights: NetworkWeights,
-    /// How its weights are stored.
-    pub precision: Precision,
+    /// Its head, and its numbers in a zstd frame, see [`network`](nfr::internals::table::network). They are written as they are.
+    pub bytes: Vec<u8>,
 }
 
 /// Writes a table. `models`, `composed` and `networks` are in ascending order of their glyphs, and every part has a
@@ -46,9 +42,8 @@ pub struct GlyphNetwork {
 ///
 /// # Errors
 ///
-/// `LimitExceeded` for a model, parts or a network that readers would refuse, `InvalidParameter` for a part without a
-/// model or with the wrong number of places, for a network that contradicts itself, or one of a glyph that is there
-/// already.
+/// `LimitExceeded` for a model or parts that readers would refuse, or for networks of more than 4 GiB, `InvalidParameter`
+/// for a part without a model or with the wrong number of places, or for a network of a glyph that is there already.
 pub fn write(
     header: &Header,
     models: &[GlyphModel],
@@ -87,19 +82,14 @@ fn pack(model: &GlyphModel, scale: Scale) -> Result<Vec<u8>, Error> {
     if codec::exceeds_limits(&model.weights) {
         return Err(too_large());
     }
-    let bytes = codec::encode(&model.weights, scale);
+    let bytes = codec::encode(&model.weights, scale)?;
     if bytes.len() <= MAX_MODEL_BYTES { Ok(bytes) } else { Err(too_large()) }
 }
 
 fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, payload: usize) {
-    let target = match header.target {
-        Target::Smooth => 0u8,
-        Target::Mono => 1,
-        Target::Lcd => 2,
-    };
     out.extend(MAJOR_VERSION.to_be_bytes());
     out.extend(MINOR_VERSION.to_be_bytes());
-    out.extend([target, if header.outlines_dropped { OUTLINES_DROPPED } else { 0 }]);
+    out.extend([header.target_number(), if header.outlines_dropped { OUTLINES_DROPPED } else { 0 }]);
     out.extend(header.first_ppem.to_be_bytes());
     out.extend(header.last_ppem.to_be_bytes());
     out.extend((glyphs as u16).to_be_bytes());
@@ -185,9 +175,9 @@ fn put_networks(out: &mut Vec<u8>, others: &HashSet<u16>, networks: &[GlyphNetwo
         }
         last = Some(network.gid);
     }
-    let (mut ends, mut payload) = (Vec::new(), Vec::new());
+    let (mut ends, mut payload) = (Vec::new(), Vec::<u8>::new());
     for network in networks {
-        payload.extend(network::encode(&network.weights, network.precision)?);
+        payload.extend(&network.bytes);
         let end = u32::try_from(payload.len()).map_err(|_| {
             Error::LimitExceeded("networks of more than 4 GiB; store fewer, or narrower ones".into())
         })?;

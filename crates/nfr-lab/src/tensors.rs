@@ -1,0 +1,39 @@
+//! Numbers out of tensors.
+
+use burn::tensor::{Element, TensorData};
+
+use nfr_convert::error::Error;
+
+/// The `count` numbers of a tensor.
+///
+/// # Errors
+///
+/// `Unsupported` for a tensor of numbers of another type, which a device may have chosen, or of another size. Whoever took
+/// such a tensor for an empty one would draw a blank picture, and measure its error.
+pub(super) fn values<E: Element>(data: &TensorData, count: usize) -> Result<Vec<E>, Error> {
+    let (found, shape) = (data.dtype(), data.shape().clone());
+    match data.try_to_vec::<E>() {
+        Ok(values) if values.len() == count => Ok(values),
+        _ => Err(Error::Unsupported(format!(
+            "a tensor of {shape:?} numbers of type {found:?} where {count} of type {:?} are needed; choose another device",
+            E::dtype()
+        ))),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_another_type_or_count_are_an_error() {
+        let data = || TensorData::from([[0.5f32, 1.0], [2.0, 3.0]]);
+        assert_eq!(values::<f32>(&data(), 4).unwrap(), [0.5, 1.0, 2.0, 3.0]);
+        assert!(
+            matches!(values::<f32>(&data(), 9), Err(Error::Unsupported(why)) if why.contains("9 of type"))
+        );
+        let wide = TensorData::from([0.5f64, 1.0]);
+        assert!(matches!(values::<f32>(&wide, 2), Err(Error::Unsupported(why)) if why.contains("F64")));
+    }
+}
