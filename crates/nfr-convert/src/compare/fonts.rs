@@ -29,7 +29,7 @@ impl<'a> FontPair<'a> {
     ///
     /// # Errors
     ///
-    /// As [`open`], [`Font::parse`] and [`Teacher::new`]; `InvalidParameter` if the neural font's outlines
+    /// As [`open`], [`Font::new`] and [`Teacher::new`]; `InvalidParameter` if the neural font's outlines
     /// are not those that its models were trained from.
     pub fn open(original: &'a [u8], index: u32, neural: &'a [u8]) -> Result<Self, Error> {
         let neural_file = open(neural, 0).map_err(|e| about("the neural font", e))?;
