@@ -189,6 +189,10 @@ fn in_threads<T: Send>(
     threads: usize,
     work: impl Fn(usize) -> Result<T, Error> + Sync,
 ) -> Result<Vec<T>, Error> {
+    // One alone is this one: WASI has no others.
+    if threads == 1 {
+        return Ok(vec![work(0)?]);
+    }
     thread::scope(|scope| {
         let work = &work;
         let running: Vec<_> = (0..threads).map(|number| scope.spawn(move || work(number))).collect();
