@@ -1,8 +1,8 @@
 //! The steps from a glyph's bytes to its pixels, each by itself.
 //!
 //! `cargo bench --bench kernels`: of the same font and glyphs as the benchmark `render`, and each figure for all of
-//! them. `unpack` decodes the stored integers; `trace` makes a model of them, which is tracing its outline; `place` finds
-//! the box at a size; `fill` puts the outline in place and fills it, from 128 pixels per em on after tracing it anew.
+//! them. `unpack` decodes the stored integers; `trace` builds the model, which traces its outline; `placement`
+//! finds the box at a size; `fill` hints the outline and fills it, from 128 pixels per em on after tracing it again.
 
 mod font;
 
@@ -35,14 +35,15 @@ fn measure(criterion: &mut Criterion) -> Result<(), Box<dyn Error>> {
     let mut scratch = Scratch::default();
     let mut pixels = vec![0; 1 << 18];
     for ppem in SIZES {
-        criterion.bench_function(&format!("place at {ppem} ppem"), |bencher| {
+        criterion.bench_function(&format!("placement at {ppem} ppem"), |bencher| {
             bencher.iter(|| models.iter().all(|model| black_box(model.placement(ppem)).is_ok()));
         });
-        let places = models.iter().map(|model| model.placement(ppem)).collect::<Result<Vec<_>, _>>()?;
+        let placements = models.iter().map(|model| model.placement(ppem)).collect::<Result<Vec<_>, _>>()?;
         criterion.bench_function(&format!("fill at {ppem} ppem"), |bencher| {
             bencher.iter(|| {
-                for (model, place) in models.iter().zip(&places) {
-                    black_box(model.draw(ppem, *place, &mut scratch, &mut pixels[..place.area()])).ok();
+                for (model, placement) in models.iter().zip(&placements) {
+                    black_box(model.draw(ppem, *placement, &mut scratch, &mut pixels[..placement.area()]))
+                        .ok();
                 }
             });
         });

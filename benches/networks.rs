@@ -12,7 +12,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use nfr::internals::model::network::{Network, Shape};
+use nfr::internals::network::{Architecture, Network};
 
 /// Widths of trunk, latent vector and encoder.
 const WIDTHS: [[u16; 3]; 3] = [[96, 32, 32], [784, 0, 0], [784, 1420, 300]];
@@ -21,12 +21,13 @@ const SIZES: [u16; 2] = [18, 61];
 
 fn measure(criterion: &mut Criterion) -> Result<(), Box<dyn Error>> {
     for [width, latent, encoder] in WIDTHS {
-        let shape = Shape { width, latent, encoder, frequencies: true, residual: true };
-        let network = Network::new(network::network(shape, &SIZES, 1)).map_err(|damage| damage.of(0))?;
+        let architecture = Architecture { width, latent, encoder, frequencies: true, residual: true };
+        let network =
+            Network::new(network::network(architecture, &SIZES, 1)).map_err(|damage| damage.of(0))?;
         for (index, size) in network.sizes().iter().enumerate() {
             let name = format!("draw {} pixels, {width} wide, latent {latent}", u32::from(size.side).pow(2));
             criterion.bench_function(&name, |bencher| {
-                bencher.iter(|| black_box(network.levels(black_box(index))).map(drop));
+                bencher.iter(|| black_box(network.coverage(black_box(index))).map(drop));
             });
         }
     }

@@ -11,8 +11,8 @@ use nfr::{DrawOptions, Font, MissingModel, Placement, Rasterizer};
 struct Atlas {
     pixels: Vec<u8>,
     width: usize,
-    /// Where the next glyph goes: the pen in the current row of glyphs, that row's top, and its height.
-    pen: usize,
+    /// The next free column in the current row of glyphs, the row's top, and its height.
+    next: usize,
     top: usize,
     height: usize,
 }
@@ -21,13 +21,13 @@ impl Atlas {
     /// Room for a bitmap, with a free pixel to the right of it and below. `None` if the atlas is full.
     fn room(&mut self, placement: Placement) -> Option<(&mut [u8], usize)> {
         let (width, height) = (placement.width as usize + 1, placement.height as usize + 1);
-        if self.pen + width > self.width {
-            (self.pen, self.top, self.height) = (0, self.top + self.height, 0);
+        if self.next + width > self.width {
+            (self.next, self.top, self.height) = (0, self.top + self.height, 0);
         }
         self.height = self.height.max(height);
-        let at = self.top * self.width + self.pen;
-        self.pen += width;
-        let fits = self.pen <= self.width && (self.top + height) * self.width <= self.pixels.len();
+        let at = self.top * self.width + self.next;
+        self.next += width;
+        let fits = self.next <= self.width && (self.top + height) * self.width <= self.pixels.len();
         fits.then(|| (&mut self.pixels[at..], self.width))
     }
 }
@@ -41,10 +41,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let text = rest.first().map_or("Magic 8", String::as_str);
     let ppem: f32 = rest.get(1).map_or(Ok(24.0), |ppem| ppem.parse())?;
     let mut rasterizer = Rasterizer::new(&font).with_missing_model(MissingModel::Outline);
-    let mut atlas = Atlas { pixels: vec![0; 256 * 256], width: 256, pen: 0, top: 0, height: 0 };
+    let mut atlas = Atlas { pixels: vec![0; 256 * 256], width: 256, next: 0, top: 0, height: 0 };
     for character in text.chars() {
         let Some(glyph) = font.glyph_for_char(character) else { continue };
-        // Each glyph at four places between pixels, as text at fractional positions needs them.
+        // Each glyph at four subpixel offsets, as text at fractional positions needs them.
         for quarter in [0.0, 0.25, 0.5, 0.75] {
             let options = DrawOptions::new(ppem).with_offset([quarter, 0.0]);
             let placed = rasterizer.render_with(glyph, options, |placement| atlas.room(placement))?;

@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-use crate::render::Placement;
+use crate::constants::{MAX_OFFSET, MAX_PPEM};
+use crate::placement::Placement;
 
 /// Why a font cannot be opened or a glyph cannot be drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -175,11 +176,10 @@ impl fmt::Display for Error {
                 "a subpixel offset of {x}, {y} pixels for glyph {glyph}, whose network draws at whole pixels"
             ),
             Self::InvalidSize(ppem) => {
-                write!(f, "{ppem} ppem is outside 0–{}", crate::DrawOptions::MAX_PPEM)
+                write!(f, "{ppem} ppem is outside 0–{MAX_PPEM}")
             }
             Self::InvalidOffset(offset) => {
-                let most = crate::DrawOptions::MAX_OFFSET;
-                write!(f, "a subpixel offset of {offset} pixels is outside -{most}–{most}")
+                write!(f, "a subpixel offset of {offset} pixels is outside -{MAX_OFFSET}–{MAX_OFFSET}")
             }
             Self::BufferTooSmall { placement: Placement { width, height, .. }, pitch, length } => write!(
                 f,

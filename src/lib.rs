@@ -20,22 +20,33 @@ extern crate alloc;
 #[cfg(all(feature = "std", not(test)))]
 extern crate std;
 
+mod bitmap;
+mod constants;
 mod error;
+mod limits;
 mod model;
+mod network;
+mod number;
+mod options;
+mod placement;
 mod render;
 mod table;
+mod target;
 
+pub use bitmap::{Bitmap, BitmapRef};
 pub use error::Error;
-pub use model::Target;
-pub use render::{
-    Bitmap, BitmapRef, DrawOptions, Font, Limits, LineMetrics, MissingModel, Placement, Rasterizer,
-};
+pub use limits::{Limits, MissingModel};
+pub use options::DrawOptions;
+pub use placement::Placement;
+pub use render::{Font, LineMetrics, Rasterizer};
+pub use target::Target;
 
 /// What the converter shares with the renderer. No promises: anything in here may change in any release.
 #[doc(hidden)]
 pub mod internals {
     pub use crate::error::Damage;
-    pub use crate::render::{Decoder, Font, Glyph, Scratch, head_units, open, union};
+    pub use crate::placement::union;
+    pub use crate::render::{Decoder, Font, Glyph, Scratch, head_units, open};
 
     use crate::Error;
     use model::gridfit::Scale;
@@ -43,7 +54,20 @@ pub mod internals {
 
     /// The models.
     pub mod model {
-        pub use crate::model::*;
+        pub use crate::model::{compose, contour, grid, hinting, sizes};
+
+        /// The grid-fit model.
+        pub mod gridfit {
+            pub use crate::constants::{MAX_PPEM, MAX_SIDE, MAX_TRAINED_PPEM};
+            pub use crate::model::grid::*;
+            pub use crate::model::gridfit::*;
+            pub use crate::model::sizes::*;
+        }
+    }
+
+    /// The paper's network.
+    pub mod network {
+        pub use crate::network::*;
     }
 
     /// The table.

@@ -93,7 +93,7 @@ fn opening_takes_the_same_memory_for_any_number_of_glyphs() {
     }
 }
 
-/// What a rasterizer may take beside its cache: the odds and the field of the glyph that is decoded, the hash table,
+/// What a rasterizer may take beside its cache: the slots and the field of the glyph that is decoded, the hash table,
 /// and the working memory of a glyph of 100 pixels.
 const BESIDE_THE_CACHE: isize = 400_000;
 

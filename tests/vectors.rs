@@ -1,6 +1,9 @@
-//! The renderer draws what is written in `spec/vectors`, and a difference does not go unnoticed.
+//! The renderer draws what is written in `spec/vectors`, and a difference does not go unnoticed. If whole bitmaps differ,
+//! a picture shows them; with `REPLACE=1` in the environment, the vectors are written again, and the test still fails.
 #![allow(clippy::unwrap_used)]
 
+#[path = "samples/picture.rs"]
+mod picture;
 #[path = "../examples/vectors/suite.rs"]
 mod suite;
 
@@ -8,9 +11,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
-#[cfg(feature = "networks")]
-use suite::write;
-use suite::{FONTS, File, check, compare, draw};
+use suite::{BITMAPS, FONTS, File, check, compare, draw, write};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/spec/vectors");
 
@@ -27,6 +28,29 @@ fn copied() -> tempfile::TempDir {
     folder
 }
 
+/// The bitmaps of a text as `bitmaps.txt` has it: the line above each, and its rows.
+fn bitmaps(text: &str) -> Vec<(String, Vec<Vec<u8>>)> {
+    let blocks = text.split("\n\n").skip(1);
+    let row = |line: &str| line.split(' ').filter_map(|pixel| u8::from_str_radix(pixel, 16).ok()).collect();
+    let bitmap = |block: &str| {
+        let mut lines = block.lines();
+        (lines.next().unwrap_or_default().to_owned(), lines.map(row).collect())
+    };
+    blocks.map(bitmap).collect()
+}
+
+/// Writes a picture of the whole bitmaps that differ from those written down, and says where it is.
+fn show(written: &str) -> String {
+    let drawn = DRAWN.iter().find(|(name, _)| name == BITMAPS).map_or("", |(_, text)| text);
+    let pairs = bitmaps(written).into_iter().zip(bitmaps(drawn)).filter(|(written, drawn)| written != drawn);
+    let pairs: Vec<_> = pairs.map(|(written, drawn)| [written.1, drawn.1]).collect();
+    if pairs.is_empty() {
+        return "no whole bitmap differs".to_owned();
+    }
+    let path = picture::write("vectors.png", &pairs);
+    format!("expected | difference | actual: {}", path.display())
+}
+
 /// What a check finds when a file's lines are changed.
 fn found(name: &str, change: impl Fn(&mut Vec<String>)) -> Vec<String> {
     let folder = copied();
@@ -40,7 +64,11 @@ fn found(name: &str, change: impl Fn(&mut Vec<String>)) -> Vec<String> {
 #[test]
 fn everything_is_drawn_as_it_is_written_down() {
     let outcome = compare(Path::new(FOLDER), &DRAWN).unwrap();
-    assert_eq!(outcome.differences, [""; 0]);
+    if !outcome.differences.is_empty() {
+        let shown = show(&fs::read_to_string(Path::new(FOLDER).join(BITMAPS)).unwrap());
+        let replaced = std::env::var_os("REPLACE").map(|_| write(Path::new(FOLDER)));
+        panic!("{}\n{shown}, REPLACE=1: {replaced:?}", outcome.differences.join("\n"));
+    }
     assert!(outcome.compared > 6000, "{} lines", outcome.compared);
 }
 
@@ -60,6 +88,24 @@ fn writing_again_changes_no_file() {
         let before = fs::read(Path::new(FOLDER).join(file.file_name())).unwrap();
         assert!(fs::read(file.path()).unwrap() == before, "{:?}", file.file_name());
     }
+}
+
+#[test]
+fn bitmaps_that_differ_are_shown_as_expected_difference_and_actual() {
+    let written = fs::read_to_string(Path::new(FOLDER).join(BITMAPS)).unwrap();
+    assert_eq!(show(&written), "no whole bitmap differs");
+    let changed = written.replacen("\n00 ", "\nff ", 1);
+    let shown = show(&changed);
+    let picture = image::open(shown.rsplit(": ").next().unwrap()).unwrap().to_luma8();
+    let black = picture.pixels().filter(|pixel| pixel.0 == [0]).count();
+    let (_, bitmap) = &bitmaps(&changed)[0];
+    let full = bitmap.iter().flatten().filter(|level| **level == 255).count();
+    assert_eq!(
+        black,
+        64 * (2 * full),
+        "the full pixels, one of which is expected and a difference, the others twice"
+    );
+    assert_eq!(picture.width(), 3 * 8 * (bitmap[0].len() as u32 + 1));
 }
 
 #[test]

@@ -13,7 +13,7 @@ pub(crate) const FONTS: &[&str] =
 /// The font that has networks. Without the feature `networks` it is left out.
 const NETWORK: &str = "network";
 /// The file with whole bitmaps.
-const BITMAPS: &str = "bitmaps.txt";
+pub(crate) const BITMAPS: &str = "bitmaps.txt";
 /// The file with a hash of many bitmaps of each glyph.
 const SWEEPS: &str = "sweeps.txt";
 
@@ -23,9 +23,9 @@ const SIZES: [f32; 22] = [
     7.0, 7.5, 8.0, 9.0, 11.0, 12.5, 13.0, 16.0, 17.25, 24.75, 25.0, 33.3, 40.0, 49.75, 50.0, 63.0, 64.25,
     64.5, 100.0, 127.75, 128.0, 256.0,
 ];
-/// Sizes at which every glyph is drawn with the pen at each of `PENS` too.
-const PEN_SIZES: [f32; 6] = [9.0, 12.5, 13.0, 16.0, 24.0, 40.0];
-const PENS: [[f32; 2]; 4] = [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.25, 0.625]];
+/// Sizes at which every glyph is drawn with each of `OFFSETS` too.
+const OFFSET_SIZES: [f32; 6] = [9.0, 12.5, 13.0, 16.0, 24.0, 40.0];
+const OFFSETS: [[f32; 2]; 4] = [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.25, 0.625]];
 /// The largest size, at which one glyph in eight is drawn too: the more pixels an em has, the sooner a difference in the
 /// last bit of a number shows in a level.
 const LARGE: (f32, u32) = (2048.0, 8);
@@ -40,8 +40,8 @@ const WHOLE: [(char, f32, [f32; 2]); 5] = [
     ('@', 24.0, [0.0, 0.0]),
 ];
 
-/// So many differing lines of a file are shown.
-const SHOWN: usize = 5;
+/// The most differing lines of a file that are listed.
+const LISTED: usize = 5;
 
 /// A file's name and what has to stand in it.
 pub(crate) type File = (String, String);
@@ -63,7 +63,6 @@ pub(crate) struct Outcome {
 /// # Errors
 ///
 /// What went wrong, for a person; a build without the feature `networks`, which would lose what it cannot draw.
-#[allow(dead_code, reason = "without networks, the tests write nothing")]
 pub(crate) fn write(folder: &Path) -> Result<(), String> {
     if !FONTS.contains(&NETWORK) {
         return Err("to write vectors, build with --features networks".into());
@@ -116,20 +115,20 @@ fn drawable(bitmaps: &str) -> &str {
 pub(crate) fn draw(folder: &Path, threads: usize) -> Result<Vec<File>, String> {
     let mut files = Vec::new();
     let mut bitmaps =
-        "# font glyph ppem pen-x pen-y left top width height, then the rows, top row first, in hexadecimal\n"
+        "# font glyph ppem offset-x offset-y left top width height, then the rows, top row first, in hexadecimal\n"
             .to_owned();
     let mut sweeps = "# font glyph hash\n".to_owned();
     for &name in FONTS {
         let path = folder.join(format!("{name}.ttf"));
-        let said = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
-        let data = fs::read(&path).map_err(|e| said(&e))?;
-        let font = Font::new(data).map_err(|e| said(&e))?;
-        let (vectors, sweep) = jobs(&font).map_err(|e| said(&e))?;
-        let lines = |jobs: &[Job]| lines(&font, jobs, threads).map_err(|e| said(&e));
-        let mut text = "# glyph ppem pen-x pen-y left top width height hash\n".to_owned();
+        let failed = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
+        let data = fs::read(&path).map_err(|e| failed(&e))?;
+        let font = Font::new(data).map_err(|e| failed(&e))?;
+        let (vectors, sweep) = jobs(&font).map_err(|e| failed(&e))?;
+        let lines = |jobs: &[Job]| lines(&font, jobs, threads).map_err(|e| failed(&e));
+        let mut text = "# glyph ppem offset-x offset-y left top width height hash\n".to_owned();
         lines(&vectors)?.iter().for_each(|line| text.extend([line, "\n"]));
         lines(&sweep)?.iter().for_each(|line| sweeps.extend([name, " ", line, "\n"]));
-        whole(name, &font, &mut bitmaps).map_err(|e| said(&e))?;
+        whole(name, &font, &mut bitmaps).map_err(|e| failed(&e))?;
         files.push((format!("{name}.txt"), text));
     }
     files.extend([(SWEEPS.into(), sweeps), (BITMAPS.into(), bitmaps)]);
@@ -138,7 +137,9 @@ pub(crate) fn draw(folder: &Path, threads: usize) -> Result<Vec<File>, String> {
 
 /// The vectors of a font, and its sweeps.
 fn jobs(font: &Font) -> Result<(Vec<Job>, Vec<Job>), Error> {
-    let shifted = PEN_SIZES.iter().flat_map(|ppem| PENS.map(|pen| DrawOptions::new(*ppem).with_offset(pen)));
+    let shifted = OFFSET_SIZES
+        .iter()
+        .flat_map(|ppem| OFFSETS.map(|offset| DrawOptions::new(*ppem).with_offset(offset)));
     let usual: Vec<DrawOptions> = SIZES.iter().map(|ppem| DrawOptions::from(*ppem)).chain(shifted).collect();
     let last = f32::from(font.ppem_range().1);
     let steps = (f32::from(SWEEP.1) / SWEEP.0) as u16;
@@ -162,7 +163,7 @@ fn jobs(font: &Font) -> Result<(Vec<Job>, Vec<Job>), Error> {
 #[cfg(feature = "networks")]
 fn network_sizes(font: &Font, glyph: u32) -> Result<Option<Vec<DrawOptions>>, Error> {
     let glyph = nfr::internals::decode(font, glyph)?;
-    let sizes = |network: &nfr::internals::model::network::Network| {
+    let sizes = |network: &nfr::internals::network::Network| {
         network.sizes().iter().map(|size| DrawOptions::from(f32::from(size.ppem))).collect()
     };
     Ok(glyph.network().map(sizes))
@@ -236,9 +237,9 @@ fn whole(name: &str, font: &Font, text: &mut String) -> Result<(), Error> {
     let networks = name == NETWORK;
     // A font of networks is smaller, and draws its own sizes alone.
     let first = [('a', f32::from(font.ppem_range().0), [0.0, 0.0])];
-    for (character, ppem, pen) in if networks { first.to_vec() } else { WHOLE.to_vec() } {
+    for (character, ppem, offset) in if networks { first.to_vec() } else { WHOLE.to_vec() } {
         let gid = font.glyph_for_char(character).ok_or(Error::NoSuchGlyph(0))?;
-        let options = DrawOptions::new(ppem).with_offset(pen);
+        let options = DrawOptions::new(ppem).with_offset(offset);
         let bitmap = Rasterizer::new(font).render(gid, options)?;
         text.extend(["\n", name, " ", &head(gid, options, &bitmap), "\n"]);
         for row in bitmap.pixels.chunks(bitmap.placement.width.max(1) as usize) {
@@ -261,12 +262,12 @@ fn compare_file(name: &str, written: &str, drawn: &str, differences: &mut Vec<St
         let (written, drawn) = (written.next().unwrap_or("nothing"), drawn.next().unwrap_or("nothing"));
         if written != drawn {
             wrong += 1;
-            if wrong <= SHOWN {
+            if wrong <= LISTED {
                 differences.push(format!("{name}:{number}: written {written}, drawn {drawn}"));
             }
         }
     }
-    if wrong > SHOWN {
-        differences.push(format!("{name}: {} more lines differ", wrong - SHOWN));
+    if wrong > LISTED {
+        differences.push(format!("{name}: {} more lines differ", wrong - LISTED));
     }
 }

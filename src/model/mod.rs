@@ -1,45 +1,8 @@
-//! The models as integers: what each stores, and how it evaluates.
+//! The grid-fit model: what it stores, and how it is evaluated.
 
 pub mod compose;
 pub mod contour;
-pub mod gridfit;
-#[cfg(feature = "networks")]
-pub mod network;
-mod root;
-
-use core::fmt;
-
-/// What the teacher hinted for, which the model therefore reproduces.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-#[non_exhaustive]
-pub enum Target {
-    /// Hinting in y for grey antialiasing (FreeType's `FT_LOAD_TARGET_NORMAL`).
-    #[default]
-    Smooth,
-    /// Hinting in x and y, drawn with grey coverage (`FT_LOAD_TARGET_MONO`).
-    Mono,
-    /// Hinting for horizontal subpixels, drawn with grey coverage (`FT_LOAD_TARGET_LCD`).
-    Lcd,
-}
-
-impl Target {
-    /// The name on the command line and in JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Smooth => "smooth",
-            Self::Mono => "mono",
-            Self::Lcd => "lcd",
-        }
-    }
-
-    /// The target of a name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Smooth, Self::Mono, Self::Lcd].into_iter().find(|target| target.name() == name)
-    }
-}
-
-impl fmt::Display for Target {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
+pub mod grid;
+pub(crate) mod gridfit;
+pub mod hinting;
+pub mod sizes;

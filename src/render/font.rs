@@ -9,11 +9,11 @@ use read_fonts::tables::cmap::PlatformId;
 use read_fonts::types::{GlyphId, Tag};
 use read_fonts::{FontRef, TableProvider, model};
 
-use super::LineMetrics;
+use super::metrics::LineMetrics;
 use crate::error::Error;
-use crate::model::Target;
-use crate::model::gridfit::Scale;
+use crate::model::sizes::Scale;
 use crate::table::{self, Header, Table};
+use crate::target::Target;
 
 /// A font with an `Nfrt` table. It shares the file's bytes: clones are cheap, and all of them are one font, which
 /// threads may use at the same time. Opening it takes the same time for any number of glyphs.

@@ -1,18 +1,21 @@
-//! A glyph that is ready to draw: one model, several at places of their own, or a network.
+//! A glyph that is ready to draw: one model, several as the parts of a composed glyph, or a network.
 
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::bitmap::Canvas;
 use super::draw::{Scratch, draw, draw_one};
-use super::limits::Budget;
-use super::{Bitmap, DrawOptions, Font, Limits, Placement, union};
+use super::font::Font;
+use crate::bitmap::{Bitmap, Canvas};
 use crate::error::Error;
+use crate::limits::{Budget, Limits};
 use crate::model::compose::Origin;
 use crate::model::gridfit::GridFit;
+use crate::model::sizes::HintedSize;
 #[cfg(feature = "networks")]
-use crate::model::network::Network;
+use crate::network::Network;
+use crate::options::DrawOptions;
+use crate::placement::{Placement, union};
 
 /// One glyph, decoded and ready to draw.
 #[derive(Debug, Clone)]
@@ -31,7 +34,7 @@ enum Drawn {
 }
 
 impl Glyph {
-    /// A glyph that is put together from models, each at a place of its own, with the default limits.
+    /// A glyph that is composed of models, each with its origin, with the default limits.
     pub fn of_models(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
         Self { glyph: 0, limits: Limits::default(), drawn: Drawn::Parts(parts) }
     }
@@ -72,7 +75,8 @@ impl Glyph {
             Drawn::Parts(parts) => {
                 let mut whole = Placement::default();
                 for (model, origin) in parts {
-                    whole = union(whole, model.placement_at(options.ppem, place(origin, options))?);
+                    let size = model.scale().at(options.ppem);
+                    whole = union(whole, model.placement_at(&size, position(origin, &size, options))?);
                 }
                 whole
             }
@@ -136,16 +140,20 @@ impl Glyph {
         budget: &mut Budget,
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
+        let size = match parts.first() {
+            Some((model, _)) => model.scale().at(options.ppem),
+            None => return Ok(room(Placement::default())?.map(|_| Placement::default())),
+        };
         if let [(model, origin)] = parts
             && !model.is_empty()
         {
-            return draw_one(model, options.ppem, place(origin, options), scratch, budget, room);
+            return draw_one(model, &size, position(origin, &size, options), scratch, budget, room);
         }
         let placement = self.placement(options)?;
         let Some(mut canvas) = room(placement)? else { return Ok(None) };
         budget.spend(placement.area() as u64)?;
-        let parts = parts.iter().map(|(model, origin)| (&**model, place(origin, options)));
-        draw(&parts, options.ppem, placement, scratch, &mut canvas, budget)?;
+        let parts = parts.iter().map(|(model, origin)| (&**model, position(origin, &size, options)));
+        draw(&parts, &size, placement, scratch, &mut canvas, budget)?;
         Ok(Some(placement))
     }
 
@@ -170,9 +178,9 @@ pub(super) fn fresh<'b>(
     }
 }
 
-/// Where a part stands, in pixels.
-fn place(origin: &Origin, options: DrawOptions) -> [f32; 2] {
-    let at = origin.at(options.ppem);
+/// The position of a part's origin in pixels.
+fn position(origin: &Origin, size: &HintedSize, options: DrawOptions) -> [f32; 2] {
+    let at = origin.at(size);
     [0, 1].map(|axis| at[axis] + options.offset[axis])
 }
 
@@ -181,14 +189,14 @@ fn place(origin: &Origin, options: DrawOptions) -> [f32; 2] {
 pub struct Decoder {
     font: Font,
     limits: Limits,
-    /// The places of the parts of all composed glyphs; unpacked when the first of these is decoded.
-    places: Option<Vec<i8>>,
+    /// The offsets that the parts of composed glyphs share; decoded with the first composed glyph.
+    offsets: Option<Vec<i8>>,
 }
 
 impl Decoder {
     /// A decoder for a font's glyphs.
     pub fn new(font: &Font, limits: Limits) -> Self {
-        Self { font: font.clone(), limits, places: None }
+        Self { font: font.clone(), limits, offsets: None }
     }
 
     /// The font whose glyphs are decoded.
@@ -214,7 +222,7 @@ impl Decoder {
         self.glyph_with(glyph, |_| None)
     }
 
-    /// Decodes a glyph. Those in `known` are not decoded again as parts of others.
+    /// Decodes a glyph. `known` gives the models that are decoded already, for the parts of composed glyphs.
     pub(super) fn glyph_with(
         &mut self,
         glyph: u32,
@@ -235,19 +243,19 @@ impl Decoder {
         let drawn = if table.is_network(glyph) {
             self::network(&table, glyph, &limits)?
         } else if table.is_composed(glyph) {
-            let places = match self.places.take() {
-                Some(places) => places,
-                None => table.places(glyph, scale, limits.decoded_bytes)?,
+            let offsets = match self.offsets.take() {
+                Some(offsets) => offsets,
+                None => table.part_offsets(glyph, scale, limits.decoded_bytes)?,
             };
-            let parts = table.parts(glyph, scale, &places);
-            self.places = Some(places);
+            let parts = table.parts(glyph, scale, &offsets);
+            self.offsets = Some(offsets);
             let placed = parts?.into_iter().map(|part| {
                 let origin = Origin::new(&part, scale).map_err(|damage| damage.of(glyph))?;
                 Ok((model(part.gid.into())?, origin))
             });
             Drawn::Parts(placed.collect::<Result<_, Error>>()?)
         } else {
-            Drawn::Parts(vec![(model(glyph)?, Origin::zero(scale))])
+            Drawn::Parts(vec![(model(glyph)?, Origin::default())])
         };
         let decoded = Glyph { glyph, limits, drawn };
         limits.check_decoded(glyph, decoded.memory())?;

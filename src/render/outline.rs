@@ -5,16 +5,18 @@ use alloc::vec::Vec;
 use read_fonts::model::glyph::outline::{DrawMemory, DrawOptions as OutlineOptions, PathSink};
 use read_fonts::types::GlyphId;
 
-use super::bitmap::Canvas;
 use super::draw::{Scratch, draw_polygons};
-use super::limits::Budget;
-use super::{DrawOptions, Font, Limits, Placement};
+use super::font::Font;
+use crate::bitmap::Canvas;
 use crate::error::Error;
-use crate::model::gridfit::floor;
+use crate::limits::{Budget, Limits};
+use crate::number::floor;
+use crate::options::DrawOptions;
+use crate::placement::Placement;
 
-/// How far (pixels) the sides of polygons may be from the curves that they stand for.
+/// The largest distance (pixels) of a polygon from the curve that it approximates.
 const TOLERANCE: f32 = 1.0 / 128.0;
-/// No curve becomes more sides than this.
+/// The most edges that a curve becomes.
 const MAX_PIECES: u16 = 256;
 
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.
@@ -31,7 +33,7 @@ pub(super) fn draw_outline<'b>(
     let placement = place(&vertices)?;
     limits.check_sides(placement.width, placement.height)?;
     let Some(mut canvas) = room(placement)? else { return Ok(None) };
-    turn(&mut vertices, &ends);
+    orient(&mut vertices, &ends);
     let (left, top) = (placement.left as f32, placement.top as f32);
     let size = [placement.width as f32, placement.height as f32];
     for [x, y] in &mut vertices {
@@ -49,7 +51,7 @@ fn flatten(font: &Font, glyph: u32, options: DrawOptions) -> Result<Flattened, E
         return Err(Error::NoSuchGlyph(glyph));
     }
     let mut flattened = Flattened { offset: options.offset, ..Flattened::default() };
-    // A blank glyph has an entry, too: what is not there cannot be read.
+    // A blank glyph has an entry, too: no entry means that the outline cannot be read.
     let outline = font.model().outline_glyphs().get(GlyphId::new(glyph));
     let outline = outline.ok_or(Error::MalformedOutline(glyph))?;
     let size = OutlineOptions::new().with_ppem(Some(options.ppem));
@@ -80,9 +82,8 @@ fn place(vertices: &[[f32; 2]]) -> Result<Placement, Error> {
     Ok(Placement { left, top, width: right.abs_diff(left), height: top.abs_diff(bottom) })
 }
 
-/// Turns all polygons so that what they enclose together is on their left: TrueType has it on the right, PostScript on
-/// the left.
-fn turn(vertices: &mut [[f32; 2]], ends: &[usize]) {
+/// Reverses all polygons if their inside is on their right, as in TrueType; PostScript has it on the left.
+fn orient(vertices: &mut [[f32; 2]], ends: &[usize]) {
     let mut start = 0;
     let mut area = 0.0;
     for &end in ends {
@@ -106,7 +107,7 @@ struct Flattened {
     vertices: Vec<[f32; 2]>,
     /// Where each polygon ends.
     ends: Vec<usize>,
-    /// What is added to every point.
+    /// The subpixel offset, which is added to every point.
     offset: [f32; 2],
 }
 
@@ -115,13 +116,13 @@ impl Flattened {
         [x + self.offset[0], y + self.offset[1]]
     }
 
-    /// The point that the path has come to.
+    /// The current point of the path.
     fn last(&self) -> [f32; 2] {
         self.vertices.last().copied().unwrap_or(self.offset)
     }
 
-    /// Adds the points at equal steps of a curve's parameter, its end among them. `bend` is how far the curve is from a
-    /// straight line at most.
+    /// Adds the points at equal steps of a curve's parameter, its end included. `bend` bounds the curve's distance from its
+    /// chord.
     fn pieces(&mut self, bend: f32, at: impl Fn(f32) -> [f32; 2]) {
         // The distance falls with the square of the number of pieces.
         let mut pieces = 1u16;

@@ -2,12 +2,15 @@
 
 use alloc::vec::Vec;
 
-use super::bitmap::Canvas;
 use super::draw::Scratch;
-use super::glyph::{Decoder, fresh};
+use super::font::Font;
+use super::glyph::{Decoder, Glyph, fresh};
 use super::outline::draw_outline;
-use super::{Bitmap, BitmapRef, DrawOptions, Font, Glyph, Limits, MissingModel, Placement};
+use crate::bitmap::{Bitmap, BitmapRef, Canvas};
 use crate::error::Error;
+use crate::limits::{Limits, MissingModel};
+use crate::options::DrawOptions;
+use crate::placement::Placement;
 
 /// Decoded models take up to this many bytes unless the caller says otherwise: about 700 glyphs.
 const DEFAULT_CACHE: usize = 8 << 20;
@@ -82,8 +85,8 @@ impl Rasterizer {
     /// As [`Rasterizer`] lists them, but for `TooMuchWork`.
     pub fn placement(&mut self, glyph: u32, options: impl Into<DrawOptions>) -> Result<Placement, Error> {
         let mut placement = Placement::default();
-        self.draw_with(glyph, options.into(), |place| {
-            placement = place;
+        self.draw_with(glyph, options.into(), |found| {
+            placement = found;
             Ok(None)
         })?;
         Ok(placement)
@@ -142,14 +145,14 @@ impl Rasterizer {
     /// # let font = nfr::Font::new(include_bytes!("../../spec/vectors/sans.ttf").as_slice())?;
     /// let mut rasterizer = nfr::Rasterizer::new(&font);
     /// let (mut atlas, width) = (vec![0; 256 * 64], 256);
-    /// let mut pen = 0;
+    /// let mut next = 0;
     /// for character in "nfr".chars().filter_map(|c| font.glyph_for_char(c)) {
-    ///     let placed = rasterizer.render_with(character, 24.0, |placement| {
-    ///         let from = pen;
-    ///         pen += placement.width as usize + 1;
-    ///         (pen <= width).then(|| (&mut atlas[from..], width))
+    ///     let drawn = rasterizer.render_with(character, 24.0, |placement| {
+    ///         let x = next;
+    ///         next += placement.width as usize + 1;
+    ///         (next <= width).then(|| (&mut atlas[x..], width))
     ///     })?;
-    ///     assert!(placed.is_some(), "the atlas is full");
+    ///     assert!(drawn.is_some(), "the atlas is full");
     /// }
     /// # Ok::<(), nfr::Error>(())
     /// ```
@@ -200,8 +203,8 @@ struct Cache {
     limit: usize,
     bytes: usize,
     clock: u64,
-    /// For each glyph of the font, where it is in `entries`, counted from 1; 0 for one that is not there.
-    places: Vec<u32>,
+    /// For each glyph of the font, its index in `entries` plus 1; 0 for one that is not cached.
+    indices: Vec<u32>,
     entries: Vec<Entry>,
 }
 
@@ -226,7 +229,7 @@ impl Cache {
     }
 
     fn find(&self, glyph: u32) -> Option<usize> {
-        (*self.places.get(glyph as usize)? as usize).checked_sub(1)
+        (*self.indices.get(glyph as usize)? as usize).checked_sub(1)
     }
 
     fn load(&mut self, decoder: &mut Decoder, glyph: u32) -> Result<usize, Error> {
@@ -237,10 +240,10 @@ impl Cache {
         }
         self.bytes += bytes;
         self.entries.push(Entry { glyph, used: self.clock, decoded });
-        if self.places.len() <= glyph as usize {
-            self.places.resize(glyph as usize + 1, 0);
+        if self.indices.len() <= glyph as usize {
+            self.indices.resize(glyph as usize + 1, 0);
         }
-        self.places[glyph as usize] = self.entries.len() as u32;
+        self.indices[glyph as usize] = self.entries.len() as u32;
         Ok(self.entries.len() - 1)
     }
 
@@ -249,9 +252,9 @@ impl Cache {
         let Some((oldest, _)) = ages.min_by_key(|(_, entry)| entry.used) else { return };
         let entry = self.entries.swap_remove(oldest);
         self.bytes -= entry.decoded.memory();
-        self.places[entry.glyph as usize] = 0;
+        self.indices[entry.glyph as usize] = 0;
         if let Some(moved) = self.entries.get(oldest) {
-            self.places[moved.glyph as usize] = oldest as u32 + 1;
+            self.indices[moved.glyph as usize] = oldest as u32 + 1;
         }
     }
 }

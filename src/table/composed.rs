@@ -1,4 +1,4 @@
-//! The part of the table about composed glyphs: which they are, and what each is put together from.
+//! The part of the table about composed glyphs: which they are, and the parts of each.
 //!
 //! Parts refer to models by their position in the table, so that a part can be nothing but a glyph with a model
 //! of its own.
@@ -8,16 +8,16 @@ use alloc::vec::Vec;
 use read_fonts::FontData;
 use read_fonts::types::BigEndian;
 
-use super::MAX_PARTS;
-use super::reader::{find, outside};
+use super::gids::{find, outside};
+use super::header::MAX_PARTS;
 use crate::error::Error;
 use crate::model::compose::Part;
 
-/// The 16-bit numbers of a part: model, offset in x and y, places in x and y.
+/// The 16-bit numbers of a part: model, offset in x and y, lists of grid offsets in x and y.
 pub const PART_NUMBERS: usize = 5;
-/// Stands for no places: the part does not snap.
-pub const NO_SNAPS: u16 = u16::MAX;
-/// How many composed glyphs, parts and lists of places there are, and the length of those lists, packed.
+/// Stands for no list: the part is not rounded to the pixel grid.
+pub const NO_GRID_OFFSETS: u16 = u16::MAX;
+/// The numbers of composed glyphs, of lists of grid offsets and of parts, and the length of the packed lists.
 pub const COUNTS_AT: usize = 40;
 
 /// The composed glyphs of a table.
@@ -27,8 +27,8 @@ pub(super) struct ComposedGlyphs<'a> {
     /// Where each glyph's parts end.
     ends: &'a [BigEndian<u32>],
     parts: &'a [BigEndian<u16>],
-    snap_count: u16,
-    snaps: &'a [u8],
+    grid_offset_count: u16,
+    grid_offsets: &'a [u8],
 }
 
 fn truncated(offset: usize) -> Error {
@@ -41,21 +41,21 @@ impl<'a> ComposedGlyphs<'a> {
         let u16_at = |at| data.read_at::<u16>(at).map_err(|_| truncated(at));
         let u32_at = |at| data.read_at::<u32>(at).map_err(|_| truncated(at));
         let count = usize::from(u16_at(COUNTS_AT)?);
-        let snap_count = u16_at(COUNTS_AT + 2)?;
-        let (part_count, snap_bytes) = (u32_at(COUNTS_AT + 4)? as usize, u32_at(COUNTS_AT + 8)? as usize);
+        let grid_offset_count = u16_at(COUNTS_AT + 2)?;
+        let (part_count, offset_bytes) = (u32_at(COUNTS_AT + 4)? as usize, u32_at(COUNTS_AT + 8)? as usize);
         let after = |at: usize, count: usize, size: usize| {
             count.checked_mul(size).and_then(|length| at.checked_add(length)).ok_or_else(|| truncated(at))
         };
         let ends_at = after(at, count, 2)?;
         let parts_at = after(ends_at, count, 4)?;
-        let snaps_at = after(parts_at, part_count, 2 * PART_NUMBERS)?;
-        let end = after(snaps_at, snap_bytes, 1)?;
+        let offsets_at = after(parts_at, part_count, 2 * PART_NUMBERS)?;
+        let end = after(offsets_at, offset_bytes, 1)?;
         let composed = Self {
             gids: data.read_array(at..ends_at).map_err(|_| truncated(at))?,
             ends: data.read_array(ends_at..parts_at).map_err(|_| truncated(ends_at))?,
-            parts: data.read_array(parts_at..snaps_at).map_err(|_| truncated(parts_at))?,
-            snap_count,
-            snaps: data.as_bytes().get(snaps_at..end).ok_or_else(|| truncated(snaps_at))?,
+            parts: data.read_array(parts_at..offsets_at).map_err(|_| truncated(parts_at))?,
+            grid_offset_count,
+            grid_offsets: data.as_bytes().get(offsets_at..end).ok_or_else(|| truncated(offsets_at))?,
         };
         Ok((composed, end))
     }
@@ -64,13 +64,13 @@ impl<'a> ComposedGlyphs<'a> {
         self.gids
     }
 
-    /// How many lists of places there are.
-    pub(super) fn snap_count(&self) -> usize {
-        self.snap_count.into()
+    /// The number of lists of grid offsets.
+    pub(super) fn grid_offset_count(&self) -> usize {
+        self.grid_offset_count.into()
     }
 
-    pub(super) fn packed_snaps(&self) -> &'a [u8] {
-        self.snaps
+    pub(super) fn packed_grid_offsets(&self) -> &'a [u8] {
+        self.grid_offsets
     }
 
     pub(super) fn find(&self, gid: u32) -> Option<usize> {
@@ -96,25 +96,25 @@ impl<'a> ComposedGlyphs<'a> {
         Ok(size_of::<u16>() + size_of::<u32>() + size_of_val(self.numbers(index)?))
     }
 
-    /// A glyph's parts. `models` are the glyphs that have models, `snaps` the lists of places one after the
+    /// A glyph's parts. `models` are the glyphs that have models, `grid_offsets` the lists of grid offsets one after the
     /// other, each of `sizes` values.
     pub(super) fn parts(
         &self,
         gid: u32,
         models: &[BigEndian<u16>],
-        snaps: &[i8],
+        grid_offsets: &[i8],
         sizes: usize,
     ) -> Result<Vec<Part>, Error> {
         let numbers = self.numbers(self.find(gid).ok_or(Error::MissingModel(gid))?)?;
         let dangling = |what: &'static str| Error::MalformedModel { glyph: gid, what };
         let list = |at: u16| match at {
-            NO_SNAPS => Ok(Vec::new()),
+            NO_GRID_OFFSETS => Ok(Vec::new()),
             at => {
                 let start = usize::from(at) * sizes;
-                snaps
+                grid_offsets
                     .get(start..start + sizes)
                     .map(<[i8]>::to_vec)
-                    .ok_or_else(|| dangling("has a part without places"))
+                    .ok_or_else(|| dangling("has a part without offsets"))
             }
         };
         numbers
@@ -127,7 +127,7 @@ impl<'a> ComposedGlyphs<'a> {
                         .ok_or_else(|| dangling("has a part without a model"))?
                         .get(),
                     offset: [number(1) as i16, number(2) as i16],
-                    snaps: [list(number(3))?, list(number(4))?],
+                    grid_offsets: [list(number(3))?, list(number(4))?],
                 })
             })
             .collect()

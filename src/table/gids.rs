@@ -1,6 +1,8 @@
-//! Which glyphs a table has, whatever they are drawn from.
+//! Lists of glyphs.
 
 use read_fonts::types::BigEndian;
+
+use crate::error::Error;
 
 /// Ascending lists of glyphs, merged.
 #[derive(Debug, Clone, Default)]
@@ -32,3 +34,13 @@ impl Iterator for Gids<'_> {
 }
 
 impl ExactSizeIterator for Gids<'_> {}
+
+/// The index of a glyph in an ascending list.
+pub(super) fn find(gids: &[BigEndian<u16>], gid: u32) -> Option<usize> {
+    gids.binary_search_by_key(&gid, |listed| listed.get().into()).ok()
+}
+
+/// The error for a glyph whose bytes lie outside the table.
+pub(super) fn outside(gid: u32) -> Error {
+    Error::MalformedModel { glyph: gid, what: "lies outside the table" }
+}

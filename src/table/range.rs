@@ -1,35 +1,36 @@
-//! A binary arithmetic coder: one decision after the other, each with its probability.
+//! A binary arithmetic coder: one bin after the other, each with its probability.
 //!
 //! It is the carry-less coder of lpaq: an interval of 32-bit numbers is split in proportion, and a leading byte that
-//! both ends share is done with. constriction 0.5, the crate for this, ends each message with whole words of 16 or
+//! both ends share is output. constriction 0.5, the crate for this, ends each message with whole words of 16 or
 //! 32 bits and brings five dependencies; a glyph is some hundreds of bytes, and the renderer's list of dependencies is
 //! to stay short.
 
 use alloc::vec::Vec;
 
-/// What a probability is a share of.
+/// The probability 1.
 pub const ONE: u32 = 1 << 12;
 
-/// Codes decisions: writes them, reads them, or adds up what they would cost.
+/// Codes bins: writes them, reads them, or adds up their cost.
 pub trait Coder {
-    /// Whether the decisions are known beforehand.
+    /// Whether the bins are known beforehand.
     const WRITES: bool;
 
-    /// Codes a decision that is 1 with probability `odds` / [`ONE`], which is neither 0 nor 1. A reader ignores
-    /// `bit` and returns what it has read.
-    fn bit(&mut self, odds: u32, bit: bool) -> bool;
+    /// Codes a bin that is 1 with probability `probability` / [`ONE`], which is neither 0 nor 1. A reader ignores `bit`
+    /// and returns what it has read.
+    fn bit(&mut self, probability: u32, bit: bool) -> bool;
 
-    /// Whether more has been read than there is: what follows means nothing.
-    fn is_spent(&self) -> bool {
+    /// Whether more has been read than there is; what is read then is meaningless.
+    fn is_exhausted(&self) -> bool {
         false
     }
 
-    /// Tells where a decision's odds came from: the contexts' slots, what each said, and their mixture.
+    /// Is given the source of each probability: the contexts' slots, the stretched probability of each, and the mixer;
+    /// `usize::MAX` if nothing was mixed.
     #[inline]
-    fn watch(&mut self, _slots: [usize; 3], _said: [i32; 3], _mix: usize, _odds: u32, _bit: bool) {}
+    fn observe(&mut self, _slots: [usize; 3], _stretched: [i32; 3], _mixer: usize, _p: u32, _bit: bool) {}
 }
 
-/// The interval and how a decision splits it.
+/// The interval that the bins so far have narrowed.
 #[derive(Debug, Clone, Copy)]
 struct Interval {
     low: u32,
@@ -40,8 +41,8 @@ impl Interval {
     const WHOLE: Self = Self { low: 0, high: u32::MAX };
 
     /// The last number that stands for a 1.
-    fn split(self, odds: u32) -> u32 {
-        self.low + (u64::from(self.high - self.low) * u64::from(odds) / u64::from(ONE)) as u32
+    fn split(self, probability: u32) -> u32 {
+        self.low + (u64::from(self.high - self.low) * u64::from(probability) / u64::from(ONE)) as u32
     }
 
     fn narrow(&mut self, split: u32, bit: bool) {
@@ -53,7 +54,7 @@ impl Interval {
     }
 
     /// The leading byte, if both ends share it; the interval then goes on with the bytes behind.
-    fn settled(&mut self) -> Option<u8> {
+    fn shift_byte(&mut self) -> Option<u8> {
         if (self.low ^ self.high) >> 24 != 0 {
             return None;
         }
@@ -69,7 +70,7 @@ impl Interval {
     }
 }
 
-/// Writes decisions.
+/// Writes bins.
 #[derive(Debug)]
 pub struct Encoder {
     interval: Interval,
@@ -83,7 +84,7 @@ impl Encoder {
         Self { interval: Interval::WHOLE, bytes: Vec::new() }
     }
 
-    /// The bytes of all decisions.
+    /// The bytes of all bins.
     pub fn finish(mut self) -> Vec<u8> {
         self.bytes.extend(self.interval.last());
         self.bytes
@@ -93,38 +94,38 @@ impl Encoder {
 impl Coder for Encoder {
     const WRITES: bool = true;
 
-    fn bit(&mut self, odds: u32, bit: bool) -> bool {
-        self.interval.narrow(self.interval.split(odds), bit);
-        while let Some(byte) = self.interval.settled() {
+    fn bit(&mut self, probability: u32, bit: bool) -> bool {
+        self.interval.narrow(self.interval.split(probability), bit);
+        while let Some(byte) = self.interval.shift_byte() {
             self.bytes.push(byte);
         }
         bit
     }
 }
 
-/// Reads decisions. Beyond the end of the bytes there are zeros.
+/// Reads bins. Beyond the end of the bytes there are zeros.
 #[derive(Debug)]
 pub struct Decoder<'a> {
     interval: Interval,
     bytes: &'a [u8],
-    /// How many bytes are settled; four more are in `window`.
-    settled: usize,
+    /// How many bytes are shifted out; four more are in `window`.
+    consumed: usize,
     window: u32,
 }
 
 /// How a message can fail to end where its bytes do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// The decisions need more bytes than there are.
+    /// The bins need more bytes than there are.
     Early,
-    /// There are more bytes than the decisions need.
+    /// There are more bytes than the bins need.
     Late,
 }
 
 impl<'a> Decoder<'a> {
     /// A decoder at the beginning of a message.
     pub fn new(bytes: &'a [u8]) -> Self {
-        let mut decoder = Self { interval: Interval::WHOLE, bytes, settled: 0, window: 0 };
+        let mut decoder = Self { interval: Interval::WHOLE, bytes, consumed: 0, window: 0 };
         decoder.window = (0..4).fold(0, |window, at| window << 8 | decoder.byte(at));
         decoder
     }
@@ -137,9 +138,9 @@ impl<'a> Decoder<'a> {
     ///
     /// # Errors
     ///
-    /// If the decisions do not end where the bytes do.
+    /// If the bins do not end where the bytes do.
     pub fn finish(self) -> Result<(), End> {
-        let length = self.settled + usize::from(self.interval.last().is_some());
+        let length = self.consumed + usize::from(self.interval.last().is_some());
         match length.cmp(&self.bytes.len()) {
             core::cmp::Ordering::Greater => Err(End::Early),
             core::cmp::Ordering::Equal => Ok(()),
@@ -152,19 +153,19 @@ impl Coder for Decoder<'_> {
     const WRITES: bool = false;
 
     #[inline]
-    fn bit(&mut self, odds: u32, _bit: bool) -> bool {
-        let split = self.interval.split(odds);
+    fn bit(&mut self, probability: u32, _bit: bool) -> bool {
+        let split = self.interval.split(probability);
         let bit = self.window <= split;
         self.interval.narrow(split, bit);
-        while self.interval.settled().is_some() {
-            self.window = self.window << 8 | self.byte(self.settled + 4);
-            self.settled += 1;
+        while self.interval.shift_byte().is_some() {
+            self.window = self.window << 8 | self.byte(self.consumed + 4);
+            self.consumed += 1;
         }
         bit
     }
 
-    fn is_spent(&self) -> bool {
-        self.settled > self.bytes.len()
+    fn is_exhausted(&self) -> bool {
+        self.consumed > self.bytes.len()
     }
 }
 
@@ -173,22 +174,22 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn decisions() -> impl Strategy<Value = Vec<(u32, bool)>> {
-        let odds = prop_oneof![1..ONE, Just(1), Just(ONE - 1), Just(ONE / 2)];
-        prop::collection::vec((odds, any::<bool>()), 0..2000)
+    fn bins() -> impl Strategy<Value = Vec<(u32, bool)>> {
+        let probability = prop_oneof![1..ONE, Just(1), Just(ONE - 1), Just(ONE / 2)];
+        prop::collection::vec((probability, any::<bool>()), 0..2000)
     }
 
-    fn encode(decisions: &[(u32, bool)]) -> Vec<u8> {
+    fn encode(bins: &[(u32, bool)]) -> Vec<u8> {
         let mut encoder = Encoder::new();
-        decisions.iter().for_each(|(odds, bit)| {
-            encoder.bit(*odds, *bit);
+        bins.iter().for_each(|(probability, bit)| {
+            encoder.bit(*probability, *bit);
         });
         encoder.finish()
     }
 
-    fn decode(bytes: &[u8], decisions: &[(u32, bool)]) -> (Vec<bool>, Result<(), End>) {
+    fn decode(bytes: &[u8], bins: &[(u32, bool)]) -> (Vec<bool>, Result<(), End>) {
         let mut decoder = Decoder::new(bytes);
-        let bits = decisions.iter().map(|(odds, _)| decoder.bit(*odds, false)).collect();
+        let bits = bins.iter().map(|(probability, _)| decoder.bit(*probability, false)).collect();
         (bits, decoder.finish())
     }
 
@@ -196,32 +197,32 @@ mod tests {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
-        fn decisions_are_read_as_they_were_written(decisions in decisions()) {
-            let expected: Vec<bool> = decisions.iter().map(|(_, bit)| *bit).collect();
-            prop_assert_eq!(decode(&encode(&decisions), &decisions), (expected, Ok(())));
+        fn bins_are_read_as_they_were_written(bins in bins()) {
+            let expected: Vec<bool> = bins.iter().map(|(_, bit)| *bit).collect();
+            prop_assert_eq!(decode(&encode(&bins), &bins), (expected, Ok(())));
         }
 
         #[test]
-        fn decisions_take_as_many_bits_as_their_odds_say(decisions in decisions()) {
-            let bits: f64 = decisions
+        fn bins_take_as_many_bits_as_their_probability_say(bins in bins()) {
+            let bits: f64 = bins
                 .iter()
-                .map(|&(odds, bit)| -(f64::from(if bit { odds } else { ONE - odds }) / f64::from(ONE)).log2())
+                .map(|&(probability, bit)| -(f64::from(if bit { probability } else { ONE - probability }) / f64::from(ONE)).log2())
                 .sum();
-            let bytes = encode(&decisions).len() as f64;
+            let bytes = encode(&bins).len() as f64;
             prop_assert!((bytes - bits / 8.0).abs() <= 2.0 + 0.001 * bits, "{bytes} for {bits} bits");
         }
 
         #[test]
-        fn other_lengths_never_mean_the_same(decisions in decisions(), at in any::<prop::sample::Index>()) {
-            let mut bytes = encode(&decisions);
-            let expected: Vec<bool> = decisions.iter().map(|(_, bit)| *bit).collect();
+        fn other_lengths_never_mean_the_same(bins in bins(), at in any::<prop::sample::Index>()) {
+            let mut bytes = encode(&bins);
+            let expected: Vec<bool> = bins.iter().map(|(_, bit)| *bit).collect();
             if !bytes.is_empty() {
                 prop_assert_ne!(
-                    decode(&bytes[..at.index(bytes.len())], &decisions), (expected.clone(), Ok(()))
+                    decode(&bytes[..at.index(bytes.len())], &bins), (expected.clone(), Ok(()))
                 );
             }
             bytes.push(0);
-            prop_assert_eq!(decode(&bytes, &decisions), (expected, Err(End::Late)));
+            prop_assert_eq!(decode(&bytes, &bins), (expected, Err(End::Late)));
         }
     }
 }

@@ -5,16 +5,20 @@ use alloc::vec::Vec;
 use read_fonts::FontData;
 use read_fonts::types::BigEndian;
 
-use super::{
-    BLOCK, Gids, HEADER_LEN, Header, MAJOR_VERSION, MAX_SNAP_BYTES, MAX_TRAINED_PPEM, NETWORKS,
-    OUTLINES_DROPPED, codec, composed::ComposedGlyphs, network, networks::Networks,
+use super::composed::ComposedGlyphs;
+use super::gids::{Gids, find, outside};
+use super::header::{
+    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, NETWORKS, OUTLINES_DROPPED,
 };
+use super::network_index::NetworkIndex;
+use super::{codec, part_offsets};
+use crate::constants::MAX_TRAINED_PPEM;
 use crate::error::Error;
-use crate::model::Target;
 use crate::model::compose::Part;
-use crate::model::gridfit::{Scale, Weights};
-#[cfg(feature = "networks")]
-use crate::model::network::NetworkWeights;
+use crate::model::gridfit::Weights;
+use crate::model::sizes::Scale;
+use crate::network;
+use crate::target::Target;
 
 /// An `Nfrt` table, borrowed from the font's bytes.
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +31,7 @@ pub struct Table<'a> {
     /// Where the models of each block begin.
     blocks: &'a [BigEndian<u32>],
     composed: ComposedGlyphs<'a>,
-    networks: Networks<'a>,
+    networks: NetworkIndex<'a>,
     payload: &'a [u8],
 }
 
@@ -93,7 +97,11 @@ impl<'a> Table<'a> {
             blocks: data.read_array(blocks_at..payload_at).map_err(|_| truncated(blocks_at))?,
             payload: bytes.get(payload_at..composed_at).ok_or_else(|| truncated(payload_at))?,
             composed,
-            networks: if has_networks { Networks::parse(data, networks_at)? } else { Networks::default() },
+            networks: if has_networks {
+                NetworkIndex::parse(data, networks_at)?
+            } else {
+                NetworkIndex::default()
+            },
         };
         Ok(table)
     }
@@ -108,7 +116,7 @@ impl<'a> Table<'a> {
         self.len
     }
 
-    /// The glyphs that can be drawn, ascending: with a model of their own, put together from others, or with a network.
+    /// The glyphs that can be drawn, ascending: with a model of their own, composed of others, or with a network.
     pub fn gids(&self) -> Gids<'a> {
         Gids::new([self.gids, self.composed.gids(), self.networks.gids()])
     }
@@ -123,7 +131,7 @@ impl<'a> Table<'a> {
         self.find(gid).is_some() || self.is_composed(gid) || self.is_network(gid)
     }
 
-    /// Whether a glyph is put together from the models of others.
+    /// Whether a glyph is composed of the models of others.
     pub fn is_composed(&self, gid: u32) -> bool {
         self.composed.find(gid).is_some()
     }
@@ -187,33 +195,34 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// Unpacks the lists of places that the parts of composed glyphs share, one after the other. `gid` is the glyph
-    /// that they are needed for.
+    /// Decodes the grid offsets that the parts of composed glyphs share, one list after the other. `gid` is the glyph that
+    /// they are needed for.
     ///
     /// # Errors
     ///
     /// `MalformedModel` or `ModelTooLarge` if they are damaged, `DecodedTooLarge` if they take more than `limit` bytes.
-    pub fn places(&self, gid: u32, scale: Scale, limit: usize) -> Result<Vec<i8>, Error> {
-        let (count, sizes) = (self.composed.snap_count(), scale.sizes());
+    pub fn part_offsets(&self, gid: u32, scale: Scale, limit: usize) -> Result<Vec<i8>, Error> {
+        let (count, sizes) = (self.composed.grid_offset_count(), scale.sizes());
         let bytes = count * sizes;
-        if bytes > MAX_SNAP_BYTES {
-            let (count, limit) = (bytes as u64, MAX_SNAP_BYTES as u64);
-            return Err(Error::ModelTooLarge { glyph: gid, what: "places of parts", count, limit });
+        if bytes > MAX_GRID_OFFSET_BYTES {
+            let (count, limit) = (bytes as u64, MAX_GRID_OFFSET_BYTES as u64);
+            return Err(Error::ModelTooLarge { glyph: gid, what: "offsets of parts", count, limit });
         }
         if bytes > limit {
             return Err(Error::DecodedTooLarge { glyph: gid, bytes, limit });
         }
-        codec::decode_places(self.composed.packed_snaps(), count, sizes).map_err(|damage| damage.of(gid))
+        let packed = self.composed.packed_grid_offsets();
+        part_offsets::decode(packed, count, sizes).map_err(|damage| damage.of(gid))
     }
 
-    /// The parts of a composed glyph, each of which is a glyph that has a model of its own. `places` are those of this
-    /// table.
+    /// The parts of a composed glyph, each of which is a glyph that has a model of its own. `offsets` are this table's
+    /// [`Self::part_offsets`].
     ///
     /// # Errors
     ///
     /// `MissingModel` if the glyph is not composed, `MalformedModel` or `ModelTooLarge` if its bytes are damaged.
-    pub fn parts(&self, gid: u32, scale: Scale, places: &[i8]) -> Result<Vec<Part>, Error> {
-        self.composed.parts(gid, self.gids, places, scale.sizes())
+    pub fn parts(&self, gid: u32, scale: Scale, offsets: &[i8]) -> Result<Vec<Part>, Error> {
+        self.composed.parts(gid, self.gids, offsets, scale.sizes())
     }
 
     /// A glyph's network.
@@ -223,7 +232,7 @@ impl<'a> Table<'a> {
     /// `MissingModel` if the glyph has none, `MalformedModel` or `ModelTooLarge` if its bytes are damaged,
     /// `DecodedTooLarge` if it takes more than `limit` bytes.
     #[cfg(feature = "networks")]
-    pub fn network(&self, gid: u32, limit: usize) -> Result<NetworkWeights, Error> {
+    pub fn network(&self, gid: u32, limit: usize) -> Result<network::NetworkWeights, Error> {
         let packed = self.packed_network(gid)?;
         let bytes = network::Head::parse(packed).map_err(|damage| damage.of(gid))?.0.memory();
         if bytes > limit {
@@ -244,14 +253,4 @@ impl<'a> Table<'a> {
     fn packed_network(&self, gid: u32) -> Result<&'a [u8], Error> {
         self.networks.packed(self.networks.find(gid).ok_or(Error::MissingModel(gid))?)
     }
-}
-
-/// Where a glyph is in an ascending list.
-pub(super) fn find(gids: &[BigEndian<u16>], gid: u32) -> Option<usize> {
-    gids.binary_search_by_key(&gid, |listed| listed.get().into()).ok()
-}
-
-/// The bytes of a glyph lie outside the table.
-pub(super) fn outside(gid: u32) -> Error {
-    Error::MalformedModel { glyph: gid, what: "lies outside the table" }
 }

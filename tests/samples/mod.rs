@@ -44,7 +44,7 @@ pub(crate) fn with_table(data: &[u8], tag: &[u8; 4], bytes: Option<&[u8]>) -> Ve
 /// A font whose `Nfrt` table has no models any more: all its glyphs lack theirs.
 pub(crate) fn without_models(data: &[u8]) -> Vec<u8> {
     let mut header = data[table(data, b"Nfrt")][..52].to_vec();
-    // Glyphs, bytes of their models, composed glyphs, places, parts, bytes of places (spec/nfrt.md, section 2).
+    // Glyphs, bytes of their models, composed glyphs, lists of grid offsets, parts, bytes of those lists (spec/nfrt.md, section 2).
     for range in [10..12, 28..32, 40..52] {
         header[range].fill(0);
     }

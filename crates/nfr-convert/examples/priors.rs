@@ -1,8 +1,8 @@
-//! Learns the odds that glyphs are packed with, `spec/priors.txt`, from converted fonts.
+//! Learns the prior probabilities that glyphs are coded with, `spec/priors.txt`, from converted fonts.
 //!
 //! `cargo run --release --example priors FONT.nfr.ttf ... > priors.txt`. The table is part of the format: fonts that were
 //! written with another one cannot be read, so this is for a new version of it. The present table comes from printable
-//! ASCII (`--unicodes U+21-7E`) of the three fonts that README speaks of, half of it for the target `mono`, too, and
+//! ASCII (`--unicodes U+21-7E`) of the three fonts of the README's figures, half of it for the target `mono`, too, and
 //! letters and digits of Roboto Medium with `--quality 15` and `85`.
 
 #![allow(clippy::print_stdout)]
@@ -26,6 +26,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         let weights = own.map(|gid| table.weights(gid, scale, usize::MAX));
         fonts.push((scale, weights.collect::<Result<Vec<_>, _>>()?));
     }
-    print!("{}", learn_priors(&fonts));
+    print!("{}", learn_priors(&fonts)?);
     Ok(())
 }

@@ -48,7 +48,7 @@ const HEAD_BYTES: usize = 54;
 const HEAD_FLAGS_AT: usize = 16;
 const HEAD_INDEX_TO_LOC_FORMAT_AT: usize = 50;
 
-/// How many bytes a font spends on hint programs.
+/// The bytes of a font's hint programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HintBytes {
     /// The programs of all glyphs, without the fields that say how long they are.
@@ -96,7 +96,7 @@ pub fn outline_hash(font: &FontRef) -> Result<u64, Error> {
 /// Writes a font with the outlines and everything else of `font`, no hint programs, and `nfrt` as its
 /// `Nfrt` table.
 ///
-/// Changed are `glyf` and `loca` (see [`strip`]), the fields of `maxp` and `head` that speak of programs, and
+/// Changed are `glyf` and `loca` (see [`strip`]), the fields of `maxp` and `head` about programs, and
 /// `gasp`, which asks for smooth and unhinted rendering at all sizes. The tables `fpgm`, `prep`, `cvt `,
 /// `cvar`, `hdmx`, `VDMX`, `LTSH` and `DSIG` are left out. All others are copied byte by byte. A font out of
 /// a collection becomes a font file of its own. The glyphs in `dropped` are left without outlines, unless glyphs
@@ -105,7 +105,7 @@ pub fn outline_hash(font: &FontRef) -> Result<u64, Error> {
 /// # Errors
 ///
 /// `Malformed` if a table or glyph that has to change cannot be read, or if a table lies outside the file;
-/// `Unsupported` without TrueType outlines; `LimitExceeded` for a result beyond 1 GiB.
+/// `Unsupported` without TrueType outlines; `LimitExceeded` for a result of more than 1 GiB.
 pub fn assemble(font: &FontRef, nfrt: &[u8], dropped: &BTreeSet<u16>) -> Result<Vec<u8>, Error> {
     let mut stripped = strip_font(font)?;
     if !dropped.is_empty() {

@@ -1,12 +1,16 @@
-//! What weights cost, and what the priors are learnt from.
+//! The bits that weights take in the table, and the training of the coder's prior probabilities.
 
+use crate::error::Error;
 use nfr::internals::model::gridfit::{Scale, Weights};
 use nfr::internals::table::codec::{self, Section};
-use nfr::internals::table::contexts::{MIXTURES, Model, SLOTS};
-use nfr::internals::table::priors::{DIGIT, PRIOR, Prior, odds};
+use nfr::internals::table::priors::{DIGIT, PRIOR, Prior, probability};
 use nfr::internals::table::range::{Coder, ONE};
+use nfr::internals::table::{
+    context_model::ContextModel,
+    elements::{MIXERS, SLOTS},
+};
 
-/// What a glyph's weights take in the table, in bits.
+/// The bits that a glyph's weights take in the table.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Cost {
     /// Counts, knots and the box.
@@ -22,13 +26,13 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// All of it.
+    /// The sum.
     pub fn total(&self) -> f64 {
         self.header + self.warp + self.field + self.patterns + self.embedding
     }
 }
 
-/// Adds up bits.
+/// A coder that adds up information content (−log₂ of each decision's probability).
 #[derive(Default)]
 struct Meter {
     bits: f64,
@@ -37,17 +41,21 @@ struct Meter {
 impl Coder for Meter {
     const WRITES: bool = true;
 
-    fn bit(&mut self, odds: u32, bit: bool) -> bool {
-        let odds = if bit { odds } else { ONE - odds };
-        self.bits -= (f64::from(odds) / f64::from(ONE)).log2();
+    fn bit(&mut self, probability: u32, bit: bool) -> bool {
+        let probability = if bit { probability } else { ONE - probability };
+        self.bits -= (f64::from(probability) / f64::from(ONE)).log2();
         bit
     }
 }
 
-/// What weights would take in the table. Their lengths fit each other and the limits of [`codec`].
-pub fn cost(weights: &Weights, scale: Scale) -> Cost {
+/// The bits that weights would take in the table.
+///
+/// # Errors
+///
+/// As [`codec::encode`], for weights outside of the limits of the format.
+pub fn cost(weights: &Weights, scale: Scale) -> Result<Cost, Error> {
     let mut cost = Cost::default();
-    let mut model = Model::new(Meter::default(), &PRIOR);
+    let mut model = ContextModel::new(Meter::default(), &PRIOR);
     let charge = |section: Section, meter: &mut Meter| {
         let to = match section {
             Section::Header => &mut cost.header,
@@ -58,85 +66,88 @@ pub fn cost(weights: &Weights, scale: Scale) -> Cost {
         };
         *to = std::mem::take(&mut meter.bits);
     };
-    // A coder that writes finds nothing wrong with weights within the limits.
-    let _ = codec::code(&mut model, &mut weights.clone(), scale, charge);
-    cost
+    codec::code(&mut model, &mut weights.clone(), scale, charge)?;
+    Ok(cost)
 }
 
-/// Rounds of learning; later ones change nothing any more.
-const ROUNDS: usize = 4;
-/// How far a mixture's weights move for a decision: per unit of what a context said and of the error in odds.
+/// Epochs; later ones change nothing.
+const EPOCHS: usize = 4;
+/// The learning rate of a mixture's weights: per unit of a context's stretched probability and of the error.
 const MIXING_RATE: f64 = 4e-9;
-/// Ones and zeros that every slot has seen beforehand.
-const UNSEEN: f64 = 0.4;
+/// The pseudo-count of ones and of zeros in every slot (additive smoothing).
+const PSEUDO_COUNT: f64 = 0.4;
 /// Digits in a line of the table.
 const LINE: usize = 96;
 
-/// Counts decisions by slot and the mixtures' errors.
+/// Counts the decisions of each slot and accumulates the gradient of the mixtures' weights, as in lpaq.
 struct Learner {
     ones: Vec<f64>,
     all: Vec<f64>,
-    moves: Vec<[f64; 3]>,
+    gradients: Vec<[f64; 3]>,
 }
 
 impl Coder for Learner {
     const WRITES: bool = true;
 
-    fn bit(&mut self, _odds: u32, bit: bool) -> bool {
+    fn bit(&mut self, _probability: u32, bit: bool) -> bool {
         bit
     }
 
-    fn watch(&mut self, slots: [usize; 3], said: [i32; 3], mix: usize, odds: u32, bit: bool) {
-        let mixed = mix < MIXTURES;
+    fn observe(&mut self, slots: [usize; 3], stretched: [i32; 3], mix: usize, probability: u32, bit: bool) {
+        let mixed = mix < MIXERS;
         for slot in &slots[..if mixed { 3 } else { 1 }] {
             self.all[*slot] += 1.0;
             self.ones[*slot] += f64::from(u8::from(bit));
         }
         if mixed {
-            let error = f64::from(if bit { ONE } else { 0 }) - f64::from(odds);
-            for (to, said) in self.moves[mix].iter_mut().zip(said) {
-                *to += MIXING_RATE * error * f64::from(said);
+            let error = f64::from(if bit { ONE } else { 0 }) - f64::from(probability);
+            for (gradient, stretched) in self.gradients[mix].iter_mut().zip(stretched) {
+                *gradient += MIXING_RATE * error * f64::from(stretched);
             }
         }
     }
 }
 
-/// Learns the table of priors, as `spec/priors.txt` has it, from fonts: for each its scale and its glyphs' weights.
+/// Learns the table of priors, in the format of `spec/priors.txt`, from fonts: the scale and the glyphs' weights of each.
 /// `examples/priors.rs` calls it.
-pub fn learn_priors(fonts: &[(Scale, Vec<Weights>)]) -> String {
-    let mut prior = Prior { slots: [1 << 15; SLOTS], weights: [[0; 3]; MIXTURES] };
+///
+/// # Errors
+///
+/// As [`cost`].
+pub fn learn_priors(fonts: &[(Scale, Vec<Weights>)]) -> Result<String, Error> {
+    let mut prior = Prior { slots: [1 << 15; SLOTS], weights: [[0; 3]; MIXERS] };
     let mut digits = [32; SLOTS];
-    let mut weights = [[0.4; 3]; MIXTURES];
-    for _ in 0..ROUNDS {
+    let mut weights = [[0.4; 3]; MIXERS];
+    for _ in 0..EPOCHS {
         let (mut ones, mut all) = (vec![0.0; SLOTS], vec![0.0; SLOTS]);
         for (scale, glyph) in fonts.iter().flat_map(|(scale, glyphs)| glyphs.iter().map(move |g| (*scale, g)))
         {
             prior.weights = weights.map(|mix| mix.map(weight_digit));
-            let learner = Learner { ones, all, moves: vec![[0.0; 3]; MIXTURES] };
-            let mut model = Model::new(learner, &prior);
-            let _ = codec::code(&mut model, &mut glyph.clone(), scale, |_, _| ());
-            let Learner { ones: seen_ones, all: seen, moves } = model.coder;
+            let learner = Learner { ones, all, gradients: vec![[0.0; 3]; MIXERS] };
+            let mut model = ContextModel::new(learner, &prior);
+            codec::code(&mut model, &mut glyph.clone(), scale, |_, _| ())?;
+            let Learner { ones: seen_ones, all: seen, gradients } = model.coder;
             (ones, all) = (seen_ones, seen);
-            for (weight, by) in weights.iter_mut().flatten().zip(moves.iter().flatten()) {
+            for (weight, by) in weights.iter_mut().flatten().zip(gradients.iter().flatten()) {
                 *weight += by;
             }
         }
         for (slot, digit) in digits.iter_mut().enumerate() {
-            let odds_of_one = (ones[slot] + UNSEEN) / (all[slot] + 2.0 * UNSEEN);
-            *digit = odds_digit(odds_of_one);
-            prior.slots[slot] = odds(*digit);
+            let share = (ones[slot] + PSEUDO_COUNT) / (all[slot] + 2.0 * PSEUDO_COUNT);
+            *digit = probability_digit(share);
+            prior.slots[slot] = probability(*digit);
         }
     }
     let weights = weights.into_iter().flatten().map(weight_digit);
     let text: Vec<char> = digits.into_iter().chain(weights).map(|digit| char::from(DIGIT + digit)).collect();
-    text.chunks(LINE).map(|line| line.iter().chain(&['\n']).collect::<String>()).collect()
+    Ok(text.chunks(LINE).map(|line| line.iter().chain(&['\n']).collect::<String>()).collect())
 }
 
 fn weight_digit(weight: f64) -> u8 {
     (weight * 32.0).round().clamp(0.0, 63.0) as u8
 }
 
-fn odds_digit(odds: f64) -> u8 {
-    let said = (odds / (1.0 - odds)).ln() * 256.0;
-    (((said - 32.0) / 64.0).round() + 32.0).clamp(0.0, 63.0) as u8
+fn probability_digit(probability: f64) -> u8 {
+    let stretched = (probability / (1.0 - probability)).ln() * 256.0;
+    (((stretched - 32.0) / 64.0).round() + 32.0).clamp(0.0, 63.0) as u8
 }

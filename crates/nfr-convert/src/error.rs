@@ -1,11 +1,10 @@
-//! What can go wrong in converting and comparing, with what to do about it.
+//! Errors of converting and comparing. Their texts say what to do.
 
 use std::fmt;
 
 use nfr::internals::Damage;
 
-/// A failure of this crate. Each variant says who is at fault; its text says what was wrong, where, and
-/// what to do about it.
+/// An error of this crate. Its text says what is wrong, where, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
@@ -15,6 +14,8 @@ pub enum Error {
     Unsupported(String),
     /// The input asks for more memory or work than the limits allow.
     LimitExceeded(String),
+    /// The font has no glyph of this number.
+    NoSuchGlyph(u32),
     /// The font has no model for this glyph.
     MissingGlyph(u16),
     /// A parameter that the caller passed does not make sense.
@@ -29,6 +30,7 @@ impl fmt::Display for Error {
             Self::Malformed(what) => write!(f, "malformed font: {what}"),
             Self::Unsupported(what) => write!(f, "unsupported: {what}"),
             Self::LimitExceeded(what) => write!(f, "limit exceeded: {what}"),
+            Self::NoSuchGlyph(gid) => write!(f, "the font has no glyph {gid}; leave it out of the selection"),
             Self::MissingGlyph(gid) => {
                 write!(f, "glyph {gid} has no model in this font; convert the font with it selected")
             }
@@ -64,7 +66,8 @@ impl From<nfr::Error> for Error {
             Cause::BitmapTooLarge { .. } | Cause::DecodedTooLarge { .. } | Cause::TooMuchWork { .. } => {
                 Self::LimitExceeded(error.to_string())
             }
-            Cause::NoSuchGlyph(glyph) | Cause::MissingModel(glyph) => match u16::try_from(glyph) {
+            Cause::NoSuchGlyph(glyph) => Self::NoSuchGlyph(glyph),
+            Cause::MissingModel(glyph) => match u16::try_from(glyph) {
                 Ok(glyph) => Self::MissingGlyph(glyph),
                 Err(_) => Self::InvalidParameter(error.to_string()),
             },
@@ -87,5 +90,20 @@ impl From<Damage> for Error {
                 Self::LimitExceeded(format!("a model has {count} {what}, {limit} are allowed"))
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_glyph_that_is_not_in_the_font_is_not_said_to_lack_a_model() {
+        let error = Error::from(nfr::Error::NoSuchGlyph(70_000));
+        assert_eq!(error, Error::NoSuchGlyph(70_000));
+        assert_eq!(error.to_string(), "the font has no glyph 70000; leave it out of the selection");
+        let error = Error::from(nfr::Error::MissingModel(36));
+        assert_eq!(error, Error::MissingGlyph(36));
+        assert!(error.to_string().contains("convert the font with it selected"));
     }
 }

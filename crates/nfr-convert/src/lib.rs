@@ -1,42 +1,41 @@
-//! From a hinted font to a neural one: select, teach, train, quantise, polish, pack. Each stage is a module, and each
-//! stage's output is a plain type that the next one takes.
+//! From a hinted font to a neural one. The stages, in order: `input`, `teacher`, `training_samples`, `predict` (sizes that
+//! the teacher does not draw), `compose` (glyphs made of other glyphs' models), `fit` (initial models), `train`, `refine`
+//! (rate–distortion refinement of the integers), `writer` and `assemble`; `pipeline` runs them. Each stage's output is a
+//! plain type that the next one takes.
 
 #![forbid(unsafe_code)]
 
 pub mod assemble;
 pub mod compare;
 mod compose;
+mod conversion;
 pub mod cost;
-mod course;
-mod deform;
-mod distance;
 pub mod error;
-pub mod open;
-pub mod outline;
-mod parallel;
-pub mod partial;
-pub mod pipeline;
-mod plain;
-pub mod polish;
-pub mod ppem;
-mod predict;
-mod quality;
+pub mod fit;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
-mod samples;
-pub mod select;
-pub mod start;
+mod fixtures;
+mod input;
+pub mod options;
+mod parallel;
+pub mod partial;
+mod pipeline;
+mod predict;
+pub mod random;
+pub mod records;
+pub mod refine;
 pub mod strip;
-pub mod teach;
 pub mod teacher;
 pub mod temporary;
 pub mod train;
-mod warp;
+pub mod training_samples;
 pub mod writer;
 
+pub use conversion::{Conversion, GlyphReport, Progress};
 pub use error::Error;
-pub use pipeline::{Conversion, GlyphReport, Options, Progress, convert, resume};
-pub use quality::Quality;
+pub use input::{open, ppem, select};
+pub use options::{Options, Quality};
+pub use pipeline::{convert, resume};
 
 /// Runs the examples of the README as tests.
 #[cfg(doctest)]

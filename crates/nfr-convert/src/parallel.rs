@@ -1,40 +1,33 @@
 //! Work on several threads.
 
-use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::thread;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
 
 use crate::error::Error;
 
-/// Does `work` on each item, on at most `jobs` threads, and gives the results in the items' order. The first failure
-/// stops all threads.
-///
-/// # Errors
-///
-/// Of several failures the first item's, whichever thread met it.
-pub(crate) fn each<T: Sync, R: Send>(
+/// Applies `work` to each item, on at most `jobs` threads, and returns the results in the items' order. After a
+/// failure no item behind the failed one is started.
+pub(crate) fn map<T: Sync, R: Send>(
     items: &[T],
     jobs: usize,
     work: impl Fn(&T) -> Result<R, Error> + Sync,
 ) -> Result<Vec<R>, Error> {
-    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let run = || {
-        let mut done = Vec::new();
-        while !failed.load(Ordering::Relaxed) {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(item) = items.get(index) else { break };
-            let result = work(item);
-            failed.fetch_or(result.is_err(), Ordering::Relaxed);
-            done.push((index, result));
-        }
-        done
+    let pool = ThreadPoolBuilder::new().num_threads(jobs.min(items.len()).max(1)).build();
+    let pool = pool.map_err(|e| Error::Io(format!("cannot start {jobs} threads ({e}); use fewer --jobs")))?;
+    // All items before the first one that fails are worked on, so that the lowest index is always found.
+    let failed = AtomicUsize::new(usize::MAX);
+    let run = |(index, item): (usize, &T)| {
+        (index < failed.load(Ordering::Relaxed)).then(|| {
+            work(item).inspect_err(|_| {
+                failed.fetch_min(index, Ordering::Relaxed);
+            })
+        })
     };
-    let mut done: Vec<(usize, Result<R, Error>)> = thread::scope(|scope| {
-        let threads: Vec<_> = (0..jobs.min(items.len()).max(1)).map(|_| scope.spawn(run)).collect();
-        threads.into_iter().flat_map(|t| t.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
-    });
-    done.sort_by_key(|(index, _)| *index);
-    done.into_iter().map(|(_, result)| result).collect()
+    let results: Vec<_> =
+        pool.install(|| items.par_iter().enumerate().with_max_len(1).map(run).collect::<Vec<_>>());
+    results.into_iter().flatten().collect()
 }
 
 #[cfg(test)]
@@ -47,16 +40,16 @@ mod tests {
     fn results_are_in_order_whichever_thread_they_come_from() {
         let items: Vec<u32> = (0..100).collect();
         for jobs in [1, 3, 1000] {
-            assert_eq!(each(&items, jobs, |k| Ok(k * k)), Ok(items.iter().map(|k| k * k).collect()));
+            assert_eq!(map(&items, jobs, |k| Ok(k * k)), Ok(items.iter().map(|k| k * k).collect()));
         }
-        assert_eq!(each(&[] as &[u32], 2, |k| Ok(*k)), Ok(Vec::new()));
+        assert_eq!(map(&[] as &[u32], 2, |k| Ok(*k)), Ok(Vec::new()));
     }
 
     #[test]
     fn as_many_threads_work_as_are_asked_for() {
         // With fewer threads than the barrier waits for, this test does not end.
         let barrier = Barrier::new(3);
-        let result = each(&[1, 2, 3], 3, |_| {
+        let result = map(&[1, 2, 3], 3, |_| {
             barrier.wait();
             Ok(())
         });
@@ -64,10 +57,10 @@ mod tests {
     }
 
     #[test]
-    fn the_first_items_failure_is_told() {
+    fn the_first_items_failure_is_returned() {
         let items: Vec<u16> = (0..100).collect();
         let barrier = Barrier::new(2);
-        let result = each(&items, 2, |k| {
+        let result = map(&items, 2, |k| {
             // Both threads have an item before either fails.
             if *k < 2 {
                 barrier.wait();

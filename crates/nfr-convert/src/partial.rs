@@ -1,9 +1,9 @@
-//! The work file of a conversion: the glyphs that are trained already, so that an interrupted conversion can go
-//! on. Training draws nothing at random that a glyph's number and the seed do not determine, so the font comes
-//! out the same, byte for byte.
+//! The work file of a conversion: the glyphs that are trained already, so that an interrupted conversion can be
+//! resumed. All random numbers depend on the seed and the glyph only, so that the font comes out the same, byte for byte.
 //!
-//! The file is a heading and records, each with its length and a checksum. A record that was not written to its
-//! end is as good as none.
+//! The file is a heading and [records]. A record that was not written to its end is ignored.
+//!
+//! [records]: crate::records
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -11,15 +11,14 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::pipeline::Options;
 use crate::error::Error;
+use crate::options::Options;
+use crate::records::{append_record, split_record};
 use nfr::internals::model::gridfit::{Scale, Weights};
 use nfr::internals::table::{FNV_BASIS, codec, fnv1a};
 
 /// Begins the file; a key of 8 bytes follows.
-const MAGIC: &[u8; 14] = b"nfr partial 2\n";
-/// Bytes of a record's checksum.
-const SUM_BYTES: usize = 8;
+const MAGIC: &[u8; 14] = b"nfr partial 3\n";
 
 /// The work file.
 #[derive(Debug)]
@@ -28,12 +27,12 @@ pub struct Partial {
     key: u64,
     /// Opened by the first record if the file did not exist.
     file: Mutex<Option<File>>,
-    /// What the file held: each glyph's box and encoded weights.
+    /// The encoded weights of each glyph that the file held.
     found: HashMap<u16, Vec<u8>>,
 }
 
-/// Ties a file to what the models depend on: this version, the input and the options, but not the threads or what
-/// becomes of the outlines.
+/// A hash of everything that the models depend on: this version, the input and the options, except the number of
+/// threads and whether outlines are dropped.
 fn key(input: &[u8], options: &Options) -> u64 {
     let options = Options { jobs: 1, drop_outlines: false, ..options.clone() };
     let text = format!("{} {options:?}", env!("CARGO_PKG_VERSION"));
@@ -41,13 +40,12 @@ fn key(input: &[u8], options: &Options) -> u64 {
 }
 
 impl Partial {
-    /// Prepares the work file of a conversion. It is made when the first glyphs are ready. With `resume`, what
-    /// an earlier conversion left there is used.
+    /// Prepares the work file of a conversion. It is created when the first glyphs are ready. With `resume`, the glyphs
+    /// of an earlier conversion in it are used.
     ///
     /// # Errors
     ///
-    /// `Io` if the file is there and `resume` is not asked for, if it belongs to another conversion, or if it
-    /// cannot be read.
+    /// `Io` if the file exists without `resume`, if it belongs to another conversion, or if it cannot be read.
     pub fn open(path: &Path, input: &[u8], options: &Options, resume: bool) -> Result<Self, Error> {
         let mut partial = Self {
             path: path.to_owned(),
@@ -55,12 +53,12 @@ impl Partial {
             file: Mutex::default(),
             found: HashMap::new(),
         };
-        let shown = path.display();
+        let name = path.display();
         if !resume {
             return match path.try_exists() {
                 Ok(false) => Ok(partial),
                 Ok(true) => Err(Error::Io(format!(
-                    "{shown} holds an unfinished conversion; go on with it with --resume, or delete it"
+                    "{name} holds an unfinished conversion; go on with it with --resume, or delete it"
                 ))),
                 Err(e) => Err(partial.failed("read", &e)),
             };
@@ -79,7 +77,7 @@ impl Partial {
             None if partial.heading().starts_with(&bytes) => 0,
             None => {
                 return Err(Error::Io(format!(
-                    "{shown} belongs to a conversion of another font, with other options or by another version; \
+                    "{name} belongs to a conversion of another font, with other options or by another version; \
                      repeat those, or delete it"
                 )));
             }
@@ -90,7 +88,7 @@ impl Partial {
                 .and_then(|()| file.write_all(&partial.heading()))
                 .map_err(|e| partial.failed("write", &e))?;
         } else {
-            // What was not written to its end makes room.
+            // A record that was cut off is overwritten.
             file.set_len(whole as u64)
                 .and_then(|()| file.seek(SeekFrom::End(0)))
                 .map_err(|e| partial.failed("write", &e))?;
@@ -99,12 +97,12 @@ impl Partial {
         Ok(partial)
     }
 
-    /// How many glyphs the file held.
+    /// The number of glyphs that the file held.
     pub fn found(&self) -> usize {
         self.found.len()
     }
 
-    /// Deletes the file, which the finished font has made useless.
+    /// Deletes the file once the font is written.
     ///
     /// # Errors
     ///
@@ -121,10 +119,6 @@ impl Partial {
     }
 
     /// The weights of some glyphs, if all of them are there.
-    ///
-    /// # Errors
-    ///
-    /// `Io` if they cannot be decoded: their checksum holds, so that nothing but this program wrote them.
     pub(super) fn weights(&self, gids: &[u16], scale: Scale) -> Result<Option<Vec<Weights>>, Error> {
         let Some(found) = gids.iter().map(|gid| self.found.get(gid)).collect::<Option<Vec<_>>>() else {
             return Ok(None);
@@ -139,10 +133,6 @@ impl Partial {
     }
 
     /// Appends the weights of some glyphs and waits until they are on the disk.
-    ///
-    /// # Errors
-    ///
-    /// `Io` if that fails.
     pub(super) fn append<'w>(
         &self,
         glyphs: impl Iterator<Item = (u16, &'w Weights)>,
@@ -155,9 +145,8 @@ impl Partial {
             payload.extend((bytes.len() as u32).to_be_bytes());
             payload.extend(bytes);
         }
-        let mut record = (payload.len() as u32).to_be_bytes().to_vec();
-        record.extend(&payload);
-        record.extend(fnv1a(FNV_BASIS, &payload).to_be_bytes());
+        let mut record = Vec::new();
+        append_record(&mut record, &payload);
         let mut slot = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         let file = match slot.as_mut() {
             Some(file) => file,
@@ -178,7 +167,7 @@ impl Partial {
         [MAGIC.as_slice(), &self.key.to_be_bytes()].concat()
     }
 
-    /// Reads the records and says where the last whole one ends. None without the heading.
+    /// Reads the records and returns where the last whole one ends; `None` without the heading.
     fn read(&mut self, bytes: &[u8]) -> Option<usize> {
         let mut rest = bytes.strip_prefix(self.heading().as_slice())?;
         while let Some((payload, after)) = split_record(rest) {
@@ -198,7 +187,7 @@ impl Partial {
                 "{} is being written by another conversion; wait for it, or choose another output",
                 self.path.display()
             ))),
-            // Not every file system can lock, and then nobody is warned.
+            // Some file systems cannot lock; two conversions then are not kept apart.
             Ok(()) | Err(std::fs::TryLockError::Error(_)) => Ok(()),
         }
     }
@@ -208,15 +197,7 @@ impl Partial {
     }
 }
 
-/// A record's payload and what follows it, if it is whole.
-fn split_record(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
-    let (length, rest) = bytes.split_first_chunk()?;
-    let (payload, rest) = rest.split_at_checked(u32::from_be_bytes(*length) as usize)?;
-    let (sum, rest) = rest.split_first_chunk::<SUM_BYTES>()?;
-    (u64::from_be_bytes(*sum) == fnv1a(FNV_BASIS, payload)).then_some((payload, rest))
-}
-
-/// A glyph of a payload, its weights, and what follows.
+/// The first glyph of a payload, its encoded weights, and the bytes after it.
 fn split_glyph(bytes: &[u8]) -> Option<(u16, &[u8], &[u8])> {
     let (gid, rest) = bytes.split_first_chunk()?;
     let (length, rest) = rest.split_first_chunk()?;

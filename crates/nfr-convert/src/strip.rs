@@ -41,7 +41,7 @@ impl Stripped {
     ///
     /// # Errors
     ///
-    /// `Malformed` if `loca` does not go with `glyf` and so many glyphs.
+    /// `Malformed` if `loca` does not match `glyf` or the number of glyphs.
     pub fn without(&self, dropped: &BTreeSet<u16>, num_glyphs: u16) -> Result<Self, Error> {
         let mut outlines = Vec::with_capacity(self.glyf.len());
         let mut ends = Vec::with_capacity(usize::from(num_glyphs));
@@ -95,7 +95,7 @@ pub fn strip(glyf: &[u8], loca: &[u8], long_offsets: bool, num_glyphs: u16) -> R
     Ok(Stripped { glyf, loca, long_offsets, program_bytes })
 }
 
-/// Where `loca` puts each glyph in `glyf`. The ranges are not checked against each other or the table.
+/// The range of each glyph in `glyf`, from `loca`. The ranges are not checked against each other or the table.
 fn glyph_ranges(loca: &[u8], long_offsets: bool, num_glyphs: u16) -> Result<Vec<Range<usize>>, Error> {
     let entries = usize::from(num_glyphs) + 1;
     let width = if long_offsets { 4 } else { 2 };
@@ -272,7 +272,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// What lies behind the reader.
+    /// The bytes that have been read.
     fn passed(&self) -> &'a [u8] {
         &self.data.as_bytes()[..self.at]
     }

@@ -4,10 +4,10 @@ use std::collections::{HashMap, HashSet};
 
 use nfr::internals::model::compose::{Composed, Origin};
 use nfr::internals::model::gridfit::{Scale, Weights};
-use nfr::internals::table::composed::{COUNTS_AT, NO_SNAPS};
+use nfr::internals::table::composed::{COUNTS_AT, NO_GRID_OFFSETS};
 use nfr::internals::table::{
-    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_PARTS, MAX_SNAP_BYTES, MINOR_VERSION,
-    NETWORK_MINOR_VERSION, NETWORKS, OUTLINES_DROPPED, codec,
+    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, MAX_PARTS, MINOR_VERSION,
+    NETWORK_MINOR_VERSION, NETWORKS, OUTLINES_DROPPED, codec, part_offsets,
 };
 
 use crate::error::Error;
@@ -15,7 +15,7 @@ use crate::error::Error;
 /// No packed model is longer than this: the table stores lengths in 16 bits.
 const MAX_MODEL_BYTES: usize = u16::MAX as usize;
 
-/// Where the header has what networks change.
+/// Offsets of the header's fields that networks change.
 const MINOR_VERSION_AT: usize = 2;
 const FLAGS_AT: usize = 5;
 
@@ -33,7 +33,7 @@ pub struct GlyphModel {
 pub struct GlyphNetwork {
     /// The glyph.
     pub gid: u16,
-    /// Its head, and its numbers in a zstd frame, see [`network`](nfr::internals::table::network). They are written as they are.
+    /// Its head, and its numbers in a zstd frame, see [`network`](nfr::internals::network). They are written as they are.
     pub bytes: Vec<u8>,
 }
 
@@ -43,7 +43,7 @@ pub struct GlyphNetwork {
 /// # Errors
 ///
 /// `LimitExceeded` for a model or parts that readers would refuse, or for networks of more than 4 GiB, `InvalidParameter`
-/// for a part without a model or with the wrong number of places, or for a network of a glyph that is there already.
+/// for a part without a model or with the wrong number of grid-fitted offsets, or for a network of a glyph that is there already.
 pub fn write(
     header: &Header,
     models: &[GlyphModel],
@@ -123,33 +123,34 @@ fn put_composed(
         }
         for part in &glyph.parts {
             Origin::new(part, scale).map_err(|_| {
-                Error::InvalidParameter(format!("a part of glyph {} lacks places", glyph.gid))
+                Error::InvalidParameter(format!("a part of glyph {} lacks grid-fitted offsets", glyph.gid))
             })?;
             let model = models.binary_search_by_key(&part.gid, |m| m.gid).map_err(|_| {
                 let (gid, part) = (glyph.gid, part.gid);
                 Error::InvalidParameter(format!("glyph {gid} has glyph {part} as a part, which has no model"))
             })?;
-            let snaps = part.snaps.each_ref().map(|snaps| match snaps.as_slice() {
-                [] => NO_SNAPS,
-                list => *known.entry(list).or_insert_with(|| {
-                    lists.push(list);
-                    (lists.len() - 1) as u16
-                }),
-            });
+            let grid_offsets =
+                part.grid_offsets.each_ref().map(|grid_offsets| match grid_offsets.as_slice() {
+                    [] => NO_GRID_OFFSETS,
+                    list => *known.entry(list).or_insert_with(|| {
+                        lists.push(list);
+                        (lists.len() - 1) as u16
+                    }),
+                });
             parts.extend((model as u16).to_be_bytes());
             parts.extend(part.offset.into_iter().flat_map(i16::to_be_bytes));
-            parts.extend(snaps.into_iter().flat_map(u16::to_be_bytes));
+            parts.extend(grid_offsets.into_iter().flat_map(u16::to_be_bytes));
             count += 1;
         }
         ends.extend(count.to_be_bytes());
     }
-    if lists.len() >= usize::from(NO_SNAPS) || lists.len() * scale.sizes() > MAX_SNAP_BYTES {
+    if lists.len() >= usize::from(NO_GRID_OFFSETS) || lists.len() * scale.sizes() > MAX_GRID_OFFSET_BYTES {
         return Err(Error::LimitExceeded(format!(
-            "{} lists of parts' places; convert fewer glyphs",
+            "{} lists of parts' offsets; convert fewer glyphs",
             lists.len()
         )));
     }
-    let packed = codec::encode_places(&lists);
+    let packed = part_offsets::encode(&lists);
     let mut counts = Vec::with_capacity(HEADER_LEN - COUNTS_AT);
     counts.extend((composed.len() as u16).to_be_bytes());
     counts.extend((lists.len() as u16).to_be_bytes());

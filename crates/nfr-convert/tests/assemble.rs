@@ -12,10 +12,8 @@ use read_fonts::tables::glyf::Glyph;
 use read_fonts::tables::head::Flags;
 use read_fonts::types::{GlyphId, Tag};
 use read_fonts::{FontRef, TableProvider};
-use skrifa::MetadataProvider;
-use skrifa::instance::{LocationRef, Size};
-use skrifa::outline::DrawSettings;
-use skrifa::outline::pen::PathElement;
+use skrifa::raw::model::glyph::outline::PathElement;
+use skrifa::{DrawMemory, Font, ScalerFont};
 
 /// Stands for the models. An odd length, so that the table has to be padded.
 const MODELS: &[u8] = b"models!";
@@ -60,15 +58,15 @@ fn glyph_programs<'a>(font: &FontRef<'a>) -> Vec<&'a [u8]> {
 #[test]
 fn skrifa_draws_every_glyph_as_before() {
     for_each_font(|name, before, after| {
-        let [before, after] = [before, after].map(|data| FontRef::new(data).unwrap());
-        let draw = |font: &FontRef, gid| {
+        let [before, after] = [before, after]
+            .map(|data| ScalerFont::force_unhinted(Font::new(data.to_vec(), 0).unwrap(), None));
+        let draw = |font: &ScalerFont, gid| {
             let mut path = Vec::<PathElement>::new();
-            let glyph = font.outline_glyphs().get(GlyphId::new(gid)).unwrap();
-            let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
-            let metrics = glyph.draw(settings, &mut path).unwrap();
-            (path, metrics.advance_width, metrics.lsb)
+            let metrics =
+                font.outline(GlyphId::new(gid)).unwrap().draw(DrawMemory::Scratch, &mut path).unwrap();
+            (path, metrics)
         };
-        for gid in 0..u32::from(before.maxp().unwrap().num_glyphs()) {
+        for gid in 0..before.font().num_glyphs() {
             assert_eq!(draw(&before, gid), draw(&after, gid), "{name}, glyph {gid}");
         }
     });

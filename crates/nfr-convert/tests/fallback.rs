@@ -1,4 +1,4 @@
-//! A glyph without a model, drawn from its plain outline, against zeno.
+//! A glyph without a model, drawn from its unhinted outline, against zeno.
 #![allow(clippy::unwrap_used)]
 
 mod samples;
@@ -30,12 +30,12 @@ fn a_glyph_that_has_no_model_is_drawn_as_zeno_fills_its_outline() {
             for character in ['g', 'é', '@', '8', ' '] {
                 let glyph = gid(&original, character);
                 assert!(!font.has_model(glyph.into()));
-                let mut plain = teacher.unhinted(glyph, ppem).unwrap();
-                plain.translate(offset);
-                let plain = plain.rasterize().unwrap();
+                let mut unhinted = teacher.unhinted(glyph, ppem).unwrap();
+                unhinted.translate(offset);
+                let unhinted = unhinted.rasterize().unwrap();
                 let options = DrawOptions::new(ppem).with_offset(offset);
                 let drawn = rasterizer.render(glyph.into(), options).unwrap();
-                sums.add(&plain, &drawn);
+                sums.add(&unhinted, &drawn);
             }
         }
         assert!(sums.mae() <= TOLERANCE, "{name}: {}", sums.mae());

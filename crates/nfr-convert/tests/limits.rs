@@ -1,11 +1,11 @@
-//! What a conversion cannot do is refused before anything is trained, with a sentence.
+//! Options and fonts that cannot be converted are refused before any training.
 #![allow(clippy::unwrap_used)]
 
 mod samples;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use nfr_convert::start::Capacity;
+use nfr_convert::options::Capacity;
 use nfr_convert::{Conversion, Error, Options, Progress, convert};
 use read_fonts::tables::glyf::{CurvePoint, Glyph};
 use read_fonts::types::Tag;
@@ -81,7 +81,7 @@ fn with_units(units: u16) -> Vec<u8> {
 fn options(font: &[u8]) -> Options {
     let mut options = Options { gids: gids(font, "BRags&"), ppem: 8..=40, ..Options::default() };
     options.schedule.steps = 4;
-    options.polish.rounds = 0;
+    options.refinement.rounds = 0;
     options
 }
 
@@ -181,7 +181,7 @@ fn options_that_make_no_sense_are_refused_before_any_work() {
             |o| &mut o.schedule.pattern_rate,
             |o| &mut o.schedule.embedding_rate,
             |o| &mut o.schedule.smoothness,
-            |o| &mut o.polish.bit_worth,
+            |o| &mut o.refinement.error_per_bit,
         ];
         for number in numbers {
             let mut options = good.clone();

@@ -1,5 +1,5 @@
-//! How close converted glyphs come to their hinted bitmaps, and what they cost. The glyphs are few, training and polish
-//! short, so that the bounds hold a small effort to what it reaches; a real conversion does better.
+//! How close converted glyphs come to their hinted bitmaps, and what they cost. The glyphs are few, training and
+//! refinement short, so that the bounds hold a small effort to what it reaches; a real conversion does better.
 #![allow(clippy::unwrap_used)]
 
 mod samples;
@@ -17,15 +17,15 @@ const TEXT: &str = "egR%8";
 /// A small part of the default training.
 const STEPS: usize = 120;
 
-/// What a font's glyphs may differ from the teacher by, as a share of what the unhinted outlines differ by, and how
-/// many bytes a glyph may take, of a table that only a few glyphs share.
+/// The largest errors of a font's glyphs as a share of the unhinted outlines' errors, and the most bytes of a glyph in a
+/// table that only a few glyphs share.
 struct Bounds {
     mae: f64,
     bad16: f64,
     bytes_per_glyph: usize,
 }
 
-/// What a conversion came to.
+/// The errors and bytes of a conversion.
 struct Measured {
     neural: Figures,
     unhinted: Figures,
@@ -35,7 +35,7 @@ struct Measured {
 fn options(data: &[u8], text: &str, target: Target, steps: usize) -> Options {
     let mut options = Options { gids: gids(data, text), target, ..Options::default() };
     options.schedule.steps = steps;
-    options.polish.rounds = 1;
+    options.refinement.rounds = 1;
     options
 }
 
@@ -46,18 +46,18 @@ fn measure(name: &str, target: Target) -> Measured {
     let neural = Font::new(conversion.font.clone()).unwrap();
     let mut rasterizer = Rasterizer::new(&neural);
     let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
-    let (mut ours, mut plain) = (Sums::default(), Sums::default());
+    let (mut ours, mut unhinted) = (Sums::default(), Sums::default());
     for ppem in options.ppem.clone() {
         let at = teacher.at(ppem).unwrap();
         for gid in &options.gids {
             let truth = at.hinted(*gid).unwrap().rasterize().unwrap();
             ours.add(&truth, &rasterizer.render((*gid).into(), f32::from(ppem)).unwrap());
-            plain.add(&truth, &teacher.unhinted(*gid, ppem.into()).unwrap().rasterize().unwrap());
+            unhinted.add(&truth, &teacher.unhinted(*gid, ppem.into()).unwrap().rasterize().unwrap());
         }
     }
     assert_eq!(ours, conversion.sums, "{name}: the report is not about what the font draws");
     let bytes_per_glyph = conversion.table_bytes / options.gids.len();
-    Measured { neural: ours.figures(), unhinted: plain.figures(), bytes_per_glyph }
+    Measured { neural: ours.figures(), unhinted: unhinted.figures(), bytes_per_glyph }
 }
 
 fn hold(name: &str, target: Target, bounds: &Bounds) {
@@ -116,7 +116,7 @@ fn quality_trades_error_for_bytes() {
     let reached = [0.0, 50.0, 100.0].map(|quality| {
         let mut options =
             options(&data, "gR", Target::Smooth, STEPS).with_quality(Quality::new(quality).unwrap());
-        options.polish.rounds = 1;
+        options.refinement.rounds = 1;
         let conversion = convert(&data, &options, &Silent).unwrap();
         (conversion.table_bytes, conversion.sums.mae())
     });

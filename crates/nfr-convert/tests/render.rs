@@ -1,4 +1,4 @@
-//! What converted fonts draw, against the teacher and between sizes.
+//! The bitmaps of converted fonts, against the teacher and between sizes.
 #![allow(clippy::unwrap_used)]
 
 mod samples;
@@ -122,10 +122,10 @@ fn a_small_step_in_size_is_a_small_step_in_pixels() {
     }
 }
 
-/// Bounds of the mean absolute error against the plain outline where nothing is hinted, by size. Training fits the
+/// Bounds of the mean absolute error against the unhinted outline where nothing is hinted, by size. Training fits the
 /// field to hinted bitmaps and rounds it, which moves edges by a fixed share of the em: 1.4 % of a large box after
 /// these few steps. Of boxes of one or two pixels every pixel is an edge.
-const PLAIN_SHAPE_MAE: [(f32, f64); 8] = [
+const UNHINTED_MAE: [(f32, f64); 8] = [
     (2.0, 0.08),
     (5.0, 0.025),
     (7.0, 0.02),
@@ -137,14 +137,14 @@ const PLAIN_SHAPE_MAE: [(f32, f64); 8] = [
 ];
 
 #[test]
-fn beyond_the_trained_sizes_the_plain_shape_is_drawn() {
+fn outside_of_the_trained_sizes_the_unhinted_shape_is_drawn() {
     let font = neural();
     let teacher = Teacher::new(&FontRef::new(&ORIGINAL).unwrap(), Target::Smooth).unwrap();
-    for (ppem, bound) in PLAIN_SHAPE_MAE {
+    for (ppem, bound) in UNHINTED_MAE {
         let mut sums = Sums::default();
         for gid in letters() {
-            let plain = teacher.unhinted(gid, ppem).unwrap().rasterize().unwrap();
-            sums.add(&plain, &glyph(&font, gid).render(ppem).unwrap());
+            let unhinted = teacher.unhinted(gid, ppem).unwrap().rasterize().unwrap();
+            sums.add(&unhinted, &glyph(&font, gid).render(ppem).unwrap());
         }
         assert!(sums.mae() <= bound, "{ppem} ppem: {}", sums.mae());
     }
@@ -154,30 +154,30 @@ fn set(ppem: f32, offset: [f32; 2]) -> DrawOptions {
     DrawOptions::new(ppem).with_offset(offset)
 }
 
-/// What a drawing with the pen between pixels may miss of the teacher's outline moved likewise, as a share of what one
-/// with the pen on a pixel misses: edges are off by as much, and lie in other pixels. Measured: at most 1.03.
-const PEN_SHARE: f64 = 1.06;
+/// The largest error with a subpixel offset, against the teacher's outline with the same offset, as a share of the error
+/// without: edges are off by as much, and lie in other pixels. Measured: at most 1.03.
+const OFFSET_SHARE: f64 = 1.06;
 
 #[test]
 fn a_glyph_between_pixels_is_the_hinted_outline_moved() {
     let font = neural();
     let teacher = Teacher::new(&FontRef::new(&ORIGINAL).unwrap(), Target::Smooth).unwrap();
-    let mae = |pen: [f32; 2]| {
+    let mae = |offset: [f32; 2]| {
         let mut sums = Sums::default();
         for ppem in 9..=24u16 {
             let at = teacher.at(ppem).unwrap();
             for gid in letters() {
                 let mut outline = at.hinted(gid).unwrap();
-                outline.translate(pen);
-                let drawn = glyph(&font, gid).render(set(ppem.into(), pen)).unwrap();
+                outline.translate(offset);
+                let drawn = glyph(&font, gid).render(set(ppem.into(), offset)).unwrap();
                 sums.add(&outline.rasterize().unwrap(), &drawn);
             }
         }
         sums.mae()
     };
     let whole = mae([0.0; 2]);
-    for pen in [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.0, 0.5], [-0.3, 0.2], [100.6, -70.9]] {
-        assert!(mae(pen) <= PEN_SHARE * whole, "{pen:?}: {} for {whole}", mae(pen));
+    for offset in [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.0, 0.5], [-0.3, 0.2], [100.6, -70.9]] {
+        assert!(mae(offset) <= OFFSET_SHARE * whole, "{offset:?}: {} for {whole}", mae(offset));
     }
 }
 
@@ -194,24 +194,24 @@ fn a_composed_glyph_between_pixels_is_the_hinted_outline_moved() {
     let font = Font::new(data).unwrap();
     let mut rasterizer = Rasterizer::new(&font);
     let teacher = Teacher::new(&FontRef::new(&ORIGINAL).unwrap(), Target::Smooth).unwrap();
-    let mut mae = |pen: [f32; 2]| {
+    let mut mae = |offset: [f32; 2]| {
         let mut sums = Sums::default();
         for ppem in [9u16, 12, 16, 20, 24] {
             let at = teacher.at(ppem).unwrap();
             for gid in samples::gids(&ORIGINAL, "áàâéèêóòôúùû") {
                 let mut outline = at.hinted(gid).unwrap();
-                outline.translate(pen);
-                let setting = set(ppem.into(), pen);
-                let drawn = rasterizer.render(gid.into(), setting).unwrap();
-                assert_eq!(glyph(&font, gid).render(setting).as_ref(), Ok(&drawn));
+                outline.translate(offset);
+                let options = set(ppem.into(), offset);
+                let drawn = rasterizer.render(gid.into(), options).unwrap();
+                assert_eq!(glyph(&font, gid).render(options).as_ref(), Ok(&drawn));
                 sums.add(&outline.rasterize().unwrap(), &drawn);
             }
         }
         sums.mae()
     };
     let whole = mae([0.0; 2]);
-    for pen in [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.0, 0.5], [-0.3, 0.2]] {
-        let moved = mae(pen);
-        assert!(moved <= PEN_SHARE * whole, "{pen:?}: {moved} for {whole}");
+    for offset in [[0.25, 0.0], [0.5, 0.0], [0.75, 0.0], [0.0, 0.5], [-0.3, 0.2]] {
+        let moved = mae(offset);
+        assert!(moved <= OFFSET_SHARE * whole, "{offset:?}: {moved} for {whole}");
     }
 }

@@ -108,12 +108,12 @@ fn loca_is_short_up_to_its_last_offset_and_long_beyond() {
     assert_eq!(fits.loca.len(), 2 * 7282);
     assert_eq!(fits.loca[2 * 7281..], 65529_u16.to_be_bytes());
 
-    let beyond = strip_all(&vec![simple(&[1]); 7282]).unwrap();
-    assert!(beyond.long_offsets);
-    assert_eq!(beyond.loca.len(), 4 * 7283);
+    let over_limit = strip_all(&vec![simple(&[1]); 7282]).unwrap();
+    assert!(over_limit.long_offsets);
+    assert_eq!(over_limit.loca.len(), 4 * 7283);
     // Long offsets are aligned to 4 bytes.
-    assert_eq!(beyond.loca[4 * 7282..], (7282_u32 * 20).to_be_bytes());
-    assert_eq!(beyond.glyf.len(), 7282 * 20);
+    assert_eq!(over_limit.loca[4 * 7282..], (7282_u32 * 20).to_be_bytes());
+    assert_eq!(over_limit.glyf.len(), 7282 * 20);
 }
 
 #[test]

@@ -2,13 +2,15 @@
 //! but the font's own hints: a font that has none is refused.
 #![allow(clippy::unwrap_used)]
 
+#[path = "samples/freetype_bitmap.rs"]
+mod freetype_bitmap;
 mod samples;
 
 use std::rc::Rc;
 
-use freetype::RenderMode;
 use freetype::face::LoadFlag;
-use nfr::{Bitmap, Placement, Target};
+use freetype_bitmap::freetype_bitmap;
+use nfr::{Bitmap, Target};
 use nfr_convert::Error;
 use nfr_convert::teacher::Teacher;
 use read_fonts::FontRef;
@@ -23,24 +25,6 @@ const RASTERISER_DIFFERENCE: u8 = 16;
 /// All sizes up to 16, where hinting moves the most for their size, and a spread of the larger ones.
 const PPEM: [u16; 18] = [8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 21, 24, 29, 32, 37, 48, 63, 64];
 
-/// FreeType's grey bitmap of a glyph that was loaded with `flags`, over the box that FreeType gives it.
-fn freetype_bitmap(face: &freetype::Face, gid: u16, ppem: u16, flags: LoadFlag) -> Bitmap {
-    face.set_pixel_sizes(0, ppem.into()).unwrap();
-    face.load_glyph(gid.into(), flags | LoadFlag::NO_BITMAP).unwrap();
-    let slot = face.glyph();
-    slot.render_glyph(RenderMode::Normal).unwrap();
-    let bitmap = slot.bitmap();
-    let (width, height) = (bitmap.width() as usize, bitmap.rows() as usize);
-    let placement = Placement {
-        left: slot.bitmap_left(),
-        top: slot.bitmap_top(),
-        width: width as u32,
-        height: height as u32,
-    };
-    let rows = bitmap.buffer().chunks(bitmap.pitch().max(1) as usize).take(height);
-    Bitmap { placement, pixels: rows.flat_map(|row| &row[..width]).copied().collect() }
-}
-
 /// Compares all ASCII glyphs of all fonts, in all sizes; `draw` is the teacher's side. Pixels are compared where
 /// the placements put them, so that a wrong `left` or `top` is a difference too.
 fn compare(target: Target, flags: LoadFlag, draw: impl Fn(&Teacher, u16, u16) -> Bitmap) {
@@ -53,7 +37,7 @@ fn compare(target: Target, flags: LoadFlag, draw: impl Fn(&Teacher, u16, u16) ->
         {
             let gid = gid(&data, character);
             let ours = draw(&teacher, gid, ppem);
-            let theirs = freetype_bitmap(&face, gid, ppem, flags);
+            let theirs = freetype_bitmap(&face, gid, ppem, flags).unwrap();
             let difference = max_difference(&ours, &theirs);
             assert!(
                 difference <= RASTERISER_DIFFERENCE,

@@ -1,18 +1,18 @@
 //! Coverage as classes: the implicit network does not regress a pixel's coverage, it chooses one of 21 levels: 0, 5 %,
 //! … 100 %. The paper's text says 20, its code has 21.
 
-use super::Square;
-pub use nfr::internals::model::network::{CLASSES, coverage_of};
+use super::SquareBitmap;
+pub use nfr::internals::network::{CLASSES, coverage_of};
 
 /// The class of a coverage: the highest level that it reaches, as the paper's code rounds.
 pub fn class_of(coverage: u8) -> usize {
     usize::from(coverage) * (CLASSES - 1) / 255
 }
 
-/// A bitmap as a network draws it that gives every pixel its class.
-pub fn rounded(bitmap: &Square) -> Square {
+/// The bitmap of a network that predicts every pixel's class correctly.
+pub fn rounded(bitmap: &SquareBitmap) -> SquareBitmap {
     let pixels = bitmap.pixels.iter().map(|coverage| coverage_of(class_of(*coverage))).collect();
-    Square { side: bitmap.side, pixels }
+    SquareBitmap { side: bitmap.side, pixels }
 }
 
 #[cfg(test)]
@@ -33,7 +33,7 @@ mod tests {
 
     #[test]
     fn a_rounded_bitmap_is_less_than_a_class_lighter_and_never_darker() {
-        let bitmap = Square { side: 16, pixels: (0..=255).collect() };
+        let bitmap = SquareBitmap { side: 16, pixels: (0..=255).collect() };
         let rounded = rounded(&bitmap);
         assert_eq!((rounded.side, rounded.pixels[0], rounded.pixels[255]), (16, 0, 255));
         assert!(

@@ -1,7 +1,7 @@
-//! How the masked network holds bitmaps of all sizes: embedded in one of the largest size by duplicating rows and
+//! The masked network's representation of bitmaps of all sizes: each is embedded in one of the largest size by duplicating rows and
 //! columns, with a mask of those that are the originals.
 
-use super::Square;
+use super::SquareBitmap;
 
 /// Where the rows (and columns) of a small bitmap go in a large one.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,13 +31,13 @@ impl Enlargement {
     }
 
     /// The bitmap, embedded.
-    pub fn enlarge(&self, square: &Square) -> Square {
+    pub fn enlarge(&self, square: &SquareBitmap) -> SquareBitmap {
         let rows = self.source.iter().map(|y| &square.pixels[y * square.side..]);
         let pixels = rows.flat_map(|row| self.source.iter().map(move |x| row[*x])).collect();
-        Square { side: self.source.len(), pixels }
+        SquareBitmap { side: self.source.len(), pixels }
     }
 
-    /// What the mask keeps of a large bitmap's values: the small one.
+    /// The values of a large bitmap at the pixels that the mask keeps: the small bitmap.
     pub fn shrink<T: Copy>(&self, large: &[T]) -> Vec<T> {
         let side = self.source.len();
         self.kept.iter().flat_map(|y| self.kept.iter().map(move |x| large[y * side + x])).collect()
@@ -71,7 +71,7 @@ mod tests {
     fn every_size_comes_back_from_the_largest_and_its_mask_has_its_pixels() {
         for side in 20..=63 {
             let pixels = (0..side * side).map(|k| (k * 31 % 256) as u8).collect();
-            let square = Square { side, pixels };
+            let square = SquareBitmap { side, pixels };
             let enlargement = Enlargement::new(side, 63);
             let large = enlargement.enlarge(&square);
             assert_eq!((large.side, large.pixels.len()), (63, 63 * 63));

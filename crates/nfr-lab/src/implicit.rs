@@ -1,4 +1,4 @@
-//! The paper's implicit network: from a pixel's place, the bitmap's size and, for families, the weight to the pixel's
+//! The paper's implicit network: from a pixel's position, the bitmap's size and, for families, the weight to the pixel's
 //! intensity class.
 
 use burn::module::Module;
@@ -9,22 +9,20 @@ use burn::tensor::{Device, Int, Tensor};
 
 use super::dense::{dense, stack};
 use super::random::Random;
-use nfr::internals::model::network::{
-    self, CLASSES, CONDITIONED, ENCODED, NORM_EPSILON, NORMALISED, REPLACING,
-};
+use nfr::internals::network::{self, CLASSES, CONDITIONED, ENCODED, NORM_EPSILON, NORMALISED, REPLACING};
 
 /// The focal loss's exponent in the paper's code.
 pub const FOCUS: f64 = 6.0;
 /// Probabilities are kept this far from 0 and 1 in the loss.
 pub const CLIP: f64 = 1e-6;
-/// How much running statistics, which only the ablation uses, take of each batch.
+/// The momentum of running statistics, which only the ablation uses.
 const NORM_MOMENTUM: f64 = 0.01;
 /// Hidden layers of the encoders of conditions.
 const ENCODER_LAYERS: usize = network::ENCODER_LAYERS - 1;
 /// Layers of the trunk; the output follows.
 const TRUNK_LAYERS: usize = network::TRUNK_LAYERS - 1;
 
-/// What an implicit network is made of.
+/// The configuration of an implicit network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ImplicitConfig {
     /// Width of the trunk's layers.
@@ -33,12 +31,12 @@ pub struct ImplicitConfig {
     pub latent: usize,
     /// Width of the encoders' hidden layers.
     pub encoder: usize,
-    /// Whether the size is an input. The paper's text has it; its code for single weights leaves it out and tells
-    /// sizes apart by where their pixels lie, and by the statistics of the batch.
+    /// Whether the size is an input. The paper's text has it; its code for single weights leaves it out and
+    /// distinguishes sizes by the positions of their pixels, and by the statistics of the batch.
     pub size: bool,
     /// Whether the weight is an input.
     pub weight: bool,
-    /// Ablation: without frequencies a number is seen as it is.
+    /// Ablation: without frequencies a number is an input as it is.
     pub frequencies: bool,
     /// Ablation: without the memorisation adaptations, batches mix bitmaps and drawing uses running statistics.
     pub memorisation: bool,
@@ -47,7 +45,7 @@ pub struct ImplicitConfig {
 }
 
 impl ImplicitConfig {
-    /// How many numbers stand for one.
+    /// The number of inputs that encode one number.
     fn encoded(&self) -> usize {
         1 + if self.frequencies { ENCODED } else { 0 }
     }
@@ -71,10 +69,10 @@ pub struct Implicit {
     residual: bool,
 }
 
-/// The pixels of some bitmaps, and what is known of these.
+/// The pixels of some bitmaps, and the conditions of these.
 #[derive(Debug, Clone)]
 pub struct Pixels {
-    /// For each pixel, its encoded row and column: see [`positions`](nfr::internals::model::network::positions).
+    /// For each pixel, its encoded row and column: see [`positions`](nfr::internals::network::positions).
     pub positions: Tensor<2>,
     /// For each bitmap, the encoded size.
     pub sizes: Option<Tensor<2>>,
@@ -84,7 +82,7 @@ pub struct Pixels {
     pub bitmap: Option<Tensor<1, Int>>,
 }
 
-/// Where batch normalisation takes its statistics from.
+/// The statistics that batch normalisation uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Statistics {
     /// The batch at hand. The running ones follow it.
@@ -103,9 +101,12 @@ impl Implicit {
         let mut hidden = [config.encoder; ENCODER_LAYERS + 1];
         hidden[ENCODER_LAYERS] = latent;
         let weight_encoder = if config.weight { stack(1, &hidden, &mut random, device) } else { Vec::new() };
-        let known = if config.weight { latent } else { 0 };
-        let size_encoder =
-            if config.size { stack(encoded + known, &hidden, &mut random, device) } else { Vec::new() };
+        let weight_latent = if config.weight { latent } else { 0 };
+        let size_encoder = if config.size {
+            stack(encoded + weight_latent, &hidden, &mut random, device)
+        } else {
+            Vec::new()
+        };
         let layer = |k: usize, random: &mut Random| {
             let inputs = if k == 0 { 2 * encoded } else { width };
             let fan_in = inputs + if CONDITIONED.contains(&k) { latent } else { 0 };
@@ -133,7 +134,7 @@ impl Implicit {
         }
     }
 
-    /// How many numbers a network of this configuration learns.
+    /// The number of parameters of a network of this configuration.
     pub fn parameters(config: ImplicitConfig) -> usize {
         let dense = |inputs: usize, outputs: usize| (inputs + 1) * outputs;
         let (width, latent, encoded) = (config.width, config.latent(), config.encoded());
@@ -141,9 +142,9 @@ impl Implicit {
             let hidden = dense(config.encoder, config.encoder) * (ENCODER_LAYERS - 1);
             dense(inputs, config.encoder) + hidden + dense(config.encoder, latent)
         };
-        let known = if config.weight { latent } else { 0 };
+        let weight_latent = if config.weight { latent } else { 0 };
         let weight = if config.weight { encoder(1) } else { 0 };
-        let size = if config.size { encoder(encoded + known) } else { 0 };
+        let size = if config.size { encoder(encoded + weight_latent) } else { 0 };
         let trunk = dense(2 * encoded + latent, width) + dense(width + latent, width);
         let rest = dense(width, width) * (TRUNK_LAYERS - CONDITIONED.len());
         weight + size + trunk + rest + dense(width, CLASSES) + NORMALISED.len() * 2 * width
@@ -169,9 +170,9 @@ impl Implicit {
         let Some(sizes) = sizes else { return of_weights };
         Some(match of_weights {
             None => encode(&self.size_encoder, sizes.clone()),
-            Some(known) => {
-                let seen = Tensor::cat(vec![sizes.clone(), known.clone()], 1);
-                encode(&self.size_encoder, seen) + known
+            Some(of_weights) => {
+                let inputs = Tensor::cat(vec![sizes.clone(), of_weights.clone()], 1);
+                encode(&self.size_encoder, inputs) + of_weights
             }
         })
     }

@@ -1,29 +1,30 @@
-//! The experiment on families: one network for several weights, judged at a weight that it never saw.
+//! The experiment on families: one network for several weights, evaluated at a weight that it was not trained on.
 
-use super::Square;
-use super::bench::{Bench, Glyph, Subject};
-use super::error::ErrorRow;
-use super::family::{GridFits, Member, train};
-use super::single::measure;
+use super::SquareBitmap;
+use super::dataset::{CharGlyph, Dataset};
+use super::error_table::ErrorRow;
+use super::evaluation::measure;
+use super::experiment::Experiment;
+use super::family::{FamilyMember, GridFitPair, train};
 use super::train::Epoch;
 use nfr_convert::error::Error;
 
-/// One way to draw the weight between, or one end.
+/// An interpolated glyph, or one of the two ends.
 #[derive(Debug, Clone)]
-pub struct Drawing {
-    /// What drew it.
+pub struct Rendering {
+    /// The model or method that drew it.
     pub name: String,
     /// The font that it should be like.
     pub of: String,
     /// Its bitmap for each size.
-    pub drawn: Vec<Square>,
+    pub drawn: Vec<SquareBitmap>,
     /// The real ones, where there is such a font.
-    pub truth: Option<Vec<Square>>,
-    /// How far off it is at each size, where that is known.
+    pub truth: Option<Vec<SquareBitmap>>,
+    /// Its errors at each size, where the real bitmaps are known.
     pub rows: Vec<ErrorRow>,
 }
 
-impl Drawing {
+impl Rendering {
     /// The mean squared error over all sizes, where it is known.
     pub fn mse(&self) -> Option<f64> {
         (!self.rows.is_empty())
@@ -31,17 +32,17 @@ impl Drawing {
     }
 }
 
-/// What an experiment on a family gives for one character.
+/// The result of an experiment on a family for one character.
 #[derive(Debug, Clone)]
 pub struct Interpolation {
     /// The character.
     pub glyph: char,
     /// The network's epochs.
     pub history: Vec<Epoch>,
-    /// What the network draws for the fonts that it was trained on.
-    pub ends: Vec<Drawing>,
-    /// What is drawn between the first and the last of them.
-    pub between: Vec<Drawing>,
+    /// The network's bitmaps of the fonts that it was trained on.
+    pub ends: Vec<Rendering>,
+    /// The bitmaps between the first and the last of them.
+    pub between: Vec<Rendering>,
 }
 
 /// The names of what is drawn between, in tables.
@@ -60,65 +61,65 @@ pub mod names {
     pub const LAST: &str = "last font as it is";
 }
 
-/// What is drawn between.
+/// The target of an interpolation.
 #[derive(Clone, Copy)]
-pub struct Aim<'s> {
-    /// What it is called.
+pub struct InterpolationTarget<'s> {
+    /// Its name in tables.
     pub name: &'s str,
     /// Its place between the first member and the last, 0 to 1.
     pub share: f64,
     /// The real font, if there is one, with the same sizes.
-    pub real: Option<&'s Subject>,
+    pub real: Option<&'s Dataset>,
 }
 
 /// Trains one network on a character of all members and draws what lies between the first and the last.
 ///
 /// # Errors
 ///
-/// As [`train`] and [`GridFits::train`].
+/// As [`train`] and [`GridFitPair::train`].
 pub fn interpolate(
-    bench: &Bench<'_>,
+    context: &Experiment<'_>,
     experiment: &str,
-    members: &[Member<'_>],
-    aim: Aim<'_>,
+    members: &[FamilyMember<'_>],
+    target: InterpolationTarget<'_>,
     glyph: char,
 ) -> Result<Interpolation, Error> {
     let (Some(first), Some(last)) = (members.first(), members.last()) else {
         return Err(Error::InvalidParameter("a family needs two fonts".into()));
     };
-    let family = train(bench, experiment, members, glyph)?;
-    let glyph_of = |subject: &Subject| subject.glyphs(glyph.encode_utf8(&mut [0; 4]));
-    let truth = |subject: &Subject| -> Result<Vec<Square>, Error> {
-        glyph_of(subject)?.first().map_or(Ok(Vec::new()), |glyph: &Glyph| subject.squares(glyph.1))
+    let family = train(context, experiment, members, glyph)?;
+    let glyph_of = |dataset: &Dataset| dataset.glyphs(glyph.encode_utf8(&mut [0; 4]));
+    let truth = |dataset: &Dataset| -> Result<Vec<SquareBitmap>, Error> {
+        glyph_of(dataset)?.first().map_or(Ok(Vec::new()), |glyph: &CharGlyph| dataset.squares(glyph.1))
     };
-    let measured = |name: &str, drawn: Vec<Square>, of: &str, real: Option<&Subject>| {
+    let measured = |name: &str, drawn: Vec<SquareBitmap>, of: &str, real: Option<&Dataset>| {
         let truth = real.map(truth).transpose()?;
         let rows = match (real, &truth) {
-            (Some(subject), Some(truth)) => measure(name, subject, glyph, truth, &drawn)?,
+            (Some(dataset), Some(truth)) => measure(name, dataset, glyph, truth, &drawn)?,
             _ => Vec::new(),
         };
-        Ok::<_, Error>(Drawing { name: name.to_owned(), of: of.to_owned(), drawn, truth, rows })
+        Ok::<_, Error>(Rendering { name: name.to_owned(), of: of.to_owned(), drawn, truth, rows })
     };
-    let end = |(number, member): (usize, &Member<'_>)| {
-        measured(names::IMPLICIT, family.member(number)?, &member.subject.name, Some(member.subject))
+    let end = |(number, member): (usize, &FamilyMember<'_>)| {
+        measured(names::IMPLICIT, family.member(number)?, &member.dataset.name, Some(member.dataset))
     };
     let ends = members.iter().enumerate().map(end).collect::<Result<_, _>>()?;
-    let fits = GridFits::train(bench, [first.subject, last.subject], glyph)?;
-    let (lighter, bolder) = (truth(first.subject)?, truth(last.subject)?);
-    let mean = lighter.iter().zip(&bolder).map(|(a, b)| mixed(a, b, aim.share)).collect();
+    let fits = GridFitPair::train(context, [first.dataset, last.dataset], glyph)?;
+    let (lighter, bolder) = (truth(first.dataset)?, truth(last.dataset)?);
+    let mean = lighter.iter().zip(&bolder).map(|(a, b)| mixed(a, b, target.share)).collect();
     let drawings = [
-        (names::IMPLICIT, family.between(0, members.len() - 1, aim.share)?),
-        (names::GRID_FIT, fits.between(first.subject, aim.share, false)?),
-        (names::SNAPPED, fits.between(first.subject, aim.share, true)?),
+        (names::IMPLICIT, family.between(0, members.len() - 1, target.share)?),
+        (names::GRID_FIT, fits.between(first.dataset, target.share, false)?),
+        (names::SNAPPED, fits.between(first.dataset, target.share, true)?),
         (names::BITMAPS, mean),
         (names::FIRST, lighter),
         (names::LAST, bolder),
     ];
-    let between = drawings.into_iter().map(|(name, drawn)| measured(name, drawn, aim.name, aim.real));
+    let between = drawings.into_iter().map(|(name, drawn)| measured(name, drawn, target.name, target.real));
     Ok(Interpolation { glyph, ends, between: between.collect::<Result<_, _>>()?, history: family.history })
 }
 
-fn mixed(a: &Square, b: &Square, share: f64) -> Square {
+fn mixed(a: &SquareBitmap, b: &SquareBitmap, share: f64) -> SquareBitmap {
     let pixel = |(a, b): (&u8, &u8)| (f64::from(*a) * (1.0 - share) + f64::from(*b) * share).round() as u8;
-    Square { side: a.side, pixels: a.pixels.iter().zip(&b.pixels).map(pixel).collect() }
+    SquareBitmap { side: a.side, pixels: a.pixels.iter().zip(&b.pixels).map(pixel).collect() }
 }

@@ -3,30 +3,35 @@
 
 #![forbid(unsafe_code)]
 
-pub mod bench;
-pub mod between;
 pub mod charts;
 pub mod classes;
+pub mod dataset;
 mod dense;
 pub mod enlarge;
-pub mod error;
+pub mod error_table;
+pub mod evaluation;
+pub mod experiment;
 pub mod family;
 mod files;
+pub mod gridfit_interpolation;
 pub mod implicit;
 pub mod interpolation;
-pub mod learn;
 pub mod masked;
-pub mod networks;
+pub mod memorisation;
+pub mod network_font;
+pub mod network_training;
+pub mod network_variant;
 pub mod output;
 pub mod pictures;
+pub mod pixel_error;
 mod random;
 pub mod report;
 pub mod resize;
 pub mod samples;
-pub mod scale;
 pub mod schedule;
-pub mod single;
-pub mod stored;
+pub mod settings;
+pub mod statistics;
+pub mod stored_network;
 pub mod study;
 mod tensors;
 pub mod train;
@@ -34,7 +39,7 @@ pub mod truth;
 
 /// One ground-truth bitmap of a glyph, or a model's picture of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Square {
+pub struct SquareBitmap {
     /// Pixels along a side of the box, *s* in the paper.
     pub side: usize,
     /// Coverage 0–255, top row first, `side`² bytes.

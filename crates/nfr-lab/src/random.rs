@@ -1,24 +1,24 @@
-//! Reproducible random numbers. burn's own generator is one for all threads, so that what it gives would depend on
-//! what else is being trained.
+//! Reproducible random numbers. burn's own generator is shared by all threads, so that its numbers would depend on the
+//! other trainings.
 
-/// SplitMix64.
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+/// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014), seeded for a stream.
 #[derive(Debug, Clone)]
-pub(super) struct Random(u64);
+pub(super) struct Random(SplitMix64);
 
 impl Random {
     /// Numbers that a seed and a stream determine: an epoch, or a layer.
     pub(super) fn new(seed: u64, stream: u64) -> Self {
-        let mut random = Self(seed ^ stream.wrapping_mul(0xD605_1EF6_9B29_3D49));
+        let state = seed ^ stream.wrapping_mul(0xD605_1EF6_9B29_3D49);
+        let mut random = Self(SplitMix64::from_seed(state.to_le_bytes()));
         random.next();
         random
     }
 
     fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        self.0.next_u64()
     }
 
     /// Evenly distributed in 0..1.
@@ -39,6 +39,12 @@ impl Random {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_numbers_stay_those_of_trainings_so_far() {
+        let mut random = Random::new(1, 2);
+        assert_eq!([random.next(), random.next()], [0x9089ae2448ba9269, 0x09165bb41a7950d8]);
+    }
 
     #[test]
     fn an_order_has_every_number_once_and_depends_on_seed_and_stream() {

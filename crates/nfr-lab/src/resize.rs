@@ -1,17 +1,17 @@
-//! What small bitmaps would be if larger ones were shrunk instead of learned: the paper's resizing comparison; and
-//! what a single wrong pixel does.
+//! Small bitmaps shrunk from larger ones instead of learned, as in the paper's comparison of resizing methods; and the
+//! effect of a single wrong pixel.
 
 use std::cmp::Reverse;
 
 use fast_image_resize::images::Image;
 use fast_image_resize::{FilterType, PixelType, ResizeAlg, ResizeOptions, Resizer};
 
-use super::Square;
-use super::error::{PixelError, pixel_error};
+use super::SquareBitmap;
+use super::pixel_error::{PixelError, pixel_error};
 use super::truth::Truth;
 use nfr_convert::error::Error;
 
-/// A way to shrink a picture. All but the first take every pixel into account, with a filter as wide as the pixels
+/// A resampling method. All but the first take every pixel into account, with a filter as wide as the pixels
 /// become (as in Pillow).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Method {
@@ -58,7 +58,7 @@ impl Method {
 /// # Errors
 ///
 /// `InvalidParameter` if either bitmap has no pixels.
-pub fn resized(square: &Square, side: usize, method: Method) -> Result<Square, Error> {
+pub fn resized(square: &SquareBitmap, side: usize, method: Method) -> Result<SquareBitmap, Error> {
     let refused = |what: String| {
         Error::InvalidParameter(format!(
             "a bitmap of {} pixels a side cannot be resized to {side} ({what}); choose sizes from 1",
@@ -74,16 +74,21 @@ pub fn resized(square: &Square, side: usize, method: Method) -> Result<Square, E
     let mut to = Image::new(side as u32, side as u32, PixelType::U8);
     let options = ResizeOptions::new().resize_alg(method.algorithm());
     Resizer::new().resize(&from, &mut to, &options).map_err(|e| refused(e.to_string()))?;
-    Ok(Square { side, pixels: to.into_vec() })
+    Ok(SquareBitmap { side, pixels: to.into_vec() })
 }
 
-/// What a glyph would be at the size with this index if the hinted bitmap of the largest size were shrunk to it, and
-/// how far that is from the hinted bitmap that belongs there.
+/// The hinted bitmap of the largest size shrunk to the size with this index, and its error against the hinted bitmap of
+/// that size.
 ///
 /// # Errors
 ///
 /// `InvalidParameter` for a glyph that the truth does not have, or an index that has no size.
-pub fn shrunk(truth: &Truth, gid: u16, index: usize, method: Method) -> Result<(Square, PixelError), Error> {
+pub fn shrunk(
+    truth: &Truth,
+    gid: u16,
+    index: usize,
+    method: Method,
+) -> Result<(SquareBitmap, PixelError), Error> {
     let hinted = truth.hinted(gid, index)?;
     let largest = truth.hinted(gid, truth.sizes.len() - 1)?;
     let small = resized(&largest, hinted.side, method)?;
@@ -93,9 +98,9 @@ pub fn shrunk(truth: &Truth, gid: u16, index: usize, method: Method) -> Result<(
 
 /// A bitmap with one pixel wrong where an eye sees it: of the darkest pixels, the one nearest to half the height of
 /// the ink becomes blank; of those of one row, the one amid the darkest others. Its eight neighbours decide, those
-/// that share a side counting twice; of equal ones it is the first, from the top and then from the left. Also tells
+/// that share a side counting twice; of equal ones it is the first, from the top and then from the left. Also returns
 /// its column and row. A blank bitmap stays as it is, and there is no such pixel.
-pub fn single_wrong_pixel(square: &Square) -> (Square, Option<[usize; 2]>) {
+pub fn single_wrong_pixel(square: &SquareBitmap) -> (SquareBitmap, Option<[usize; 2]>) {
     let side = square.side;
     let at = |x: i64, y: i64| {
         let inside = (0..side as i64).contains(&x) && (0..side as i64).contains(&y);
@@ -131,7 +136,7 @@ mod tests {
 
     #[test]
     fn what_is_even_stays_even_by_every_method() {
-        let square = Square { side: 63, pixels: vec![200; 63 * 63] };
+        let square = SquareBitmap { side: 63, pixels: vec![200; 63 * 63] };
         for method in Method::ALL {
             let small = resized(&square, 20, method).unwrap();
             assert_eq!(small.pixels, vec![200; 400], "{}", method.name());
@@ -141,7 +146,7 @@ mod tests {
     #[test]
     fn each_method_weighs_the_pixels_by_its_filter() {
         // Black in the left half; half as many pixels. The filter is twice as wide as its name says.
-        let square = Square { side: 8, pixels: [[255, 255, 255, 255, 0, 0, 0, 0]; 8].concat() };
+        let square = SquareBitmap { side: 8, pixels: [[255, 255, 255, 255, 0, 0, 0, 0]; 8].concat() };
         let row = |method| resized(&square, 4, method).unwrap().pixels[..4].to_vec();
         assert_eq!(row(Method::Nearest), [255, 255, 0, 0]);
         // Pixels at -1.5, -0.5, 0.5, 1.5 of 2 weigh 1, 3, 3, 1; of the last new black pixel, 1/8 is white.
@@ -156,8 +161,8 @@ mod tests {
     #[test]
     fn every_method_is_pillows_of_that_name() {
         let pixels = (0..49).map(|i| ((i % 7 * 37 + i / 7 * 91) % 256) as u8).collect();
-        let square = Square { side: 7, pixels };
-        // What Pillow 13.0's `resize((3, 3), …)` makes of it. It rounds between rows and columns too, in other places.
+        let square = SquareBitmap { side: 7, pixels };
+        // The results of Pillow 13.0's `resize((3, 3), …)`, which also rounds between rows and columns.
         let pillow: [[u8; 9]; 5] = [
             [128, 202, 20, 54, 128, 202, 236, 54, 128],
             [98, 131, 127, 108, 114, 135, 129, 112, 114],
@@ -174,9 +179,9 @@ mod tests {
 
     #[test]
     fn an_empty_bitmap_cannot_be_resized() {
-        let square = Square { side: 2, pixels: vec![0; 4] };
+        let square = SquareBitmap { side: 2, pixels: vec![0; 4] };
         assert!(resized(&square, 0, Method::Nearest).is_err());
-        assert!(resized(&Square { side: 0, pixels: vec![] }, 2, Method::Lanczos).is_err());
+        assert!(resized(&SquareBitmap { side: 0, pixels: vec![] }, 2, Method::Lanczos).is_err());
     }
 
     #[test]
@@ -196,21 +201,22 @@ mod tests {
     #[test]
     fn the_wrong_pixel_is_a_black_one_at_half_height_amid_black_ones() {
         // A cross: the row through its middle is at half height, and its middle has four black neighbours.
-        let square = Square { side: 4, pixels: [[0, 255, 0, 0], [255; 4], [0, 255, 0, 0], [0; 4]].concat() };
+        let square =
+            SquareBitmap { side: 4, pixels: [[0, 255, 0, 0], [255; 4], [0, 255, 0, 0], [0; 4]].concat() };
         let (wrong, place) = single_wrong_pixel(&square);
         assert_eq!(place, Some([1, 1]));
         let differing: Vec<_> = (0..16).filter(|&i| wrong.pixels[i] != square.pixels[i]).collect();
         assert_eq!((differing, wrong.pixels[5]), (vec![5], 0));
         // A stem of 5 rows with a foot: the stem's middle, not the corner.
-        let stem = Square { side: 5, pixels: [[255, 0, 0, 0, 0]; 4].concat() };
-        let stem = Square { pixels: [stem.pixels, vec![255; 5]].concat(), ..stem };
+        let stem = SquareBitmap { side: 5, pixels: [[255, 0, 0, 0, 0]; 4].concat() };
+        let stem = SquareBitmap { pixels: [stem.pixels, vec![255; 5]].concat(), ..stem };
         assert_eq!(single_wrong_pixel(&stem).1, Some([0, 2]));
     }
 
     #[test]
     fn of_equal_pixels_the_first_is_wrong_and_a_blank_bitmap_has_none() {
-        assert_eq!(single_wrong_pixel(&Square { side: 2, pixels: vec![9; 4] }).1, Some([0, 0]));
-        let blank = Square { side: 2, pixels: vec![0; 4] };
+        assert_eq!(single_wrong_pixel(&SquareBitmap { side: 2, pixels: vec![9; 4] }).1, Some([0, 0]));
+        let blank = SquareBitmap { side: 2, pixels: vec![0; 4] };
         assert_eq!(single_wrong_pixel(&blank), (blank, None));
     }
 }

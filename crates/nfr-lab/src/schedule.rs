@@ -11,7 +11,7 @@ pub fn implicit_rates(epochs: usize) -> Vec<f64> {
     let fifth = epochs / FIFTHS.len();
     let mut rates = Vec::with_capacity(epochs);
     for (k, (first, last)) in FIFTHS.into_iter().enumerate() {
-        // What does not divide by five goes to the last.
+        // The remainder of the division by five goes to the last.
         let length = if k + 1 == FIFTHS.len() { epochs - rates.len() } else { fifth };
         let factor = last / first;
         rates.extend((0..length).map(|epoch| first * factor.powf(epoch as f64 / length as f64)));

@@ -1,53 +1,58 @@
-//! All experiments of the paper's evaluation, one after the other, and what came of them.
+//! All experiments of the paper's evaluation, one after the other, and their results.
 
-use super::Square;
-use super::bench::{Bench, Glyph, Subject};
-use super::error::{ErrorRow, pixel_error};
-use super::family::Member;
-use super::interpolation::{Aim, Interpolation, interpolate};
+use super::SquareBitmap;
+use super::dataset::{CharGlyph, Dataset};
+use super::error_table::ErrorRow;
+use super::evaluation::{Evaluation, measure};
+use super::experiment::Experiment;
+use super::family::FamilyMember;
+use super::implicit::Implicit;
+use super::interpolation::{Interpolation, InterpolationTarget, interpolate};
+use super::memorisation::{grid_fit, implicit, train};
+use super::network_variant::{Ablation, NetworkVariant};
+use super::pixel_error::pixel_error;
 use super::resize::{Method, shrunk, single_wrong_pixel};
-use super::single::{Ablation, Model, Outcome, grid_fit, implicit, measure, train};
-use super::stored::{cropped, drawn, font, weights};
-use nfr::internals::table::Precision;
+use super::stored_network::{cropped, network_weights, render_stored, stored_font};
+use nfr::internals::network::Precision;
 use nfr_convert::error::Error;
 
-/// What to study.
-pub struct Plan<'s> {
+/// The fonts and characters of a study.
+pub struct StudyPlan<'s> {
     /// The three fonts of the comparison, the first of which also has the other experiments.
-    pub fonts: &'s [Subject],
+    pub fonts: &'s [Dataset],
     /// Every size of the first font's truth, for what needs no training.
-    pub all_sizes: &'s Subject,
+    pub all_sizes: &'s Dataset,
     /// The characters that all models learn.
     pub glyphs: &'s str,
-    /// Those of the ablations.
+    /// The characters of the ablations.
     pub ablated: &'s str,
-    /// Those that are stored in a font.
+    /// The characters that are stored in a font.
     pub stored: &'s str,
     /// A lighter and a bolder weight, with the sizes in common.
-    pub weights: [Member<'s>; 2],
+    pub weights: [FamilyMember<'s>; 2],
     /// The weight between them.
-    pub between: &'s Subject,
+    pub between: &'s Dataset,
     /// The characters of the experiment on weights.
     pub weighted: &'s str,
     /// Two typefaces, with the sizes in common.
-    pub styles: [Member<'s>; 2],
+    pub styles: [FamilyMember<'s>; 2],
     /// The characters of the experiment on typefaces.
     pub styled: &'s str,
 }
 
-/// What a font with the paper's network makes of a glyph.
+/// A glyph that a font draws with the paper's network.
 #[derive(Debug, Clone)]
-pub struct Stored {
+pub struct StoredResult {
     /// The character.
     pub glyph: char,
     /// Bits of a weight.
     pub bits: u8,
     /// Bytes of the network in the table.
     pub bytes: usize,
-    /// What the renderer draws, against the truth.
-    pub outcome: Outcome,
+    /// The renderer's bitmaps, against the truth.
+    pub evaluation: Evaluation,
     /// The mean squared error of what the network drew before it was stored, in the glyph's box, which is what fonts draw.
-    pub before: f64,
+    pub mse_before: f64,
 }
 
 /// The effect of one wrong pixel on a bitmap.
@@ -56,30 +61,30 @@ pub struct WrongPixel {
     /// The character.
     pub glyph: char,
     /// The true bitmap.
-    pub truth: Square,
+    pub truth: SquareBitmap,
     /// The same with one pixel of ink gone.
-    pub wrong: Square,
+    pub wrong: SquareBitmap,
     /// Column and row of that pixel.
     pub at: [usize; 2],
     /// Its mean squared error.
     pub mse: f64,
 }
 
-/// What came of a study.
+/// The results of a study.
 #[derive(Debug, Clone, Default)]
-pub struct Findings {
+pub struct StudyResults {
     /// Masked network, implicit network and grid-fit field, for each font and character.
-    pub outcomes: Vec<Outcome>,
+    pub evaluations: Vec<Evaluation>,
     /// Bytes of each grid-fit field.
     pub grid_fit_bytes: Vec<usize>,
     /// The implicit network without one part, on the first font.
-    pub ablations: Vec<Outcome>,
+    pub ablations: Vec<Evaluation>,
     /// One network for two weights.
     pub weights: Vec<Interpolation>,
     /// One network for two typefaces.
     pub styles: Vec<Interpolation>,
     /// Networks in fonts.
-    pub stored: Vec<Stored>,
+    pub stored: Vec<StoredResult>,
     /// The largest bitmap, shrunk, against the hinted ones: the model is the method.
     pub resized: Vec<ErrorRow>,
     /// Unhinted bitmaps against hinted ones.
@@ -91,101 +96,101 @@ pub struct Findings {
 /// The name of unhinted bitmaps in tables.
 pub const UNHINTED: &str = "unhinted";
 
-impl Plan<'_> {
-    /// Runs all experiments. Trainings that the bench has already are taken from there, if it resumes.
+impl StudyPlan<'_> {
+    /// Runs all experiments. If the context resumes, finished trainings are taken from its directory.
     ///
     /// # Errors
     ///
     /// As the experiments'.
-    pub fn run(&self, bench: &Bench<'_>) -> Result<Findings, Error> {
-        let mut findings = Findings::default();
-        self.memorise(bench, &mut findings)?;
-        self.ablate(bench, &mut findings)?;
+    pub fn run(&self, context: &Experiment<'_>) -> Result<StudyResults, Error> {
+        let mut results = StudyResults::default();
+        self.memorise(context, &mut results)?;
+        self.ablate(context, &mut results)?;
         let weights = |glyph: &char| {
             let share = 0.5;
-            let aim = Aim { name: &self.between.name, share, real: Some(self.between) };
-            interpolate(bench, "weights", &self.weights, aim, *glyph)
+            let target = InterpolationTarget { name: &self.between.name, share, real: Some(self.between) };
+            interpolate(context, "weights", &self.weights, target, *glyph)
         };
         let weighted: Vec<char> = self.weighted.chars().collect();
-        findings.weights = bench.each(&weighted, weights)?;
+        results.weights = context.each(&weighted, weights)?;
         let styles = |glyph: &char| {
-            let aim = Aim { name: "between the typefaces", share: 0.5, real: None };
-            interpolate(bench, "styles", &self.styles, aim, *glyph)
+            let target = InterpolationTarget { name: "between the typefaces", share: 0.5, real: None };
+            interpolate(context, "styles", &self.styles, target, *glyph)
         };
         let styled: Vec<char> = self.styled.chars().collect();
-        findings.styles = bench.each(&styled, styles)?;
-        self.compare_bitmaps(&mut findings)?;
-        self.store(bench, &mut findings)?;
-        Ok(findings)
+        results.styles = context.each(&styled, styles)?;
+        self.compare_bitmaps(&mut results)?;
+        self.store(context, &mut results)?;
+        Ok(results)
     }
 
-    fn memorise(&self, bench: &Bench<'_>, findings: &mut Findings) -> Result<(), Error> {
+    fn memorise(&self, context: &Experiment<'_>, results: &mut StudyResults) -> Result<(), Error> {
         let mut trainings = Vec::new();
-        for subject in self.fonts {
-            let glyphs = subject.glyphs(self.glyphs)?;
-            for (outcome, bytes) in grid_fit(bench, subject, &glyphs)? {
-                findings.outcomes.push(outcome);
-                findings.grid_fit_bytes.push(bytes);
+        for dataset in self.fonts {
+            let glyphs = dataset.glyphs(self.glyphs)?;
+            for (evaluation, bytes) in grid_fit(context, dataset, &glyphs)? {
+                results.evaluations.push(evaluation);
+                results.grid_fit_bytes.push(bytes);
             }
-            let models = [Model::Implicit(Vec::new()), Model::Masked];
+            let models = [NetworkVariant::Implicit(Vec::new()), NetworkVariant::Masked];
             trainings.extend(models.into_iter().flat_map(|model| {
-                glyphs.iter().map(move |glyph| (subject, *glyph, model.clone())).collect::<Vec<_>>()
+                glyphs.iter().map(move |glyph| (dataset, *glyph, model.clone())).collect::<Vec<_>>()
             }));
         }
-        findings
-            .outcomes
-            .extend(bench.each(&trainings, |(subject, glyph, model)| train(bench, subject, *glyph, model))?);
+        results.evaluations.extend(
+            context.each(&trainings, |(dataset, glyph, model)| train(context, dataset, *glyph, model))?,
+        );
         Ok(())
     }
 
-    fn ablate(&self, bench: &Bench<'_>, findings: &mut Findings) -> Result<(), Error> {
+    fn ablate(&self, context: &Experiment<'_>, results: &mut StudyResults) -> Result<(), Error> {
         let glyphs = self.fonts[0].glyphs(self.ablated)?;
-        let trainings: Vec<(Glyph, Model)> = Ablation::ALL
+        let trainings: Vec<(CharGlyph, NetworkVariant)> = Ablation::ALL
             .into_iter()
-            .flat_map(|part| glyphs.iter().map(move |glyph| (*glyph, Model::Implicit(vec![part]))))
+            .flat_map(|part| glyphs.iter().map(move |glyph| (*glyph, NetworkVariant::Implicit(vec![part]))))
             .collect();
-        findings.ablations =
-            bench.each(&trainings, |(glyph, model)| train(bench, &self.fonts[0], *glyph, model))?;
+        results.ablations =
+            context.each(&trainings, |(glyph, model)| train(context, &self.fonts[0], *glyph, model))?;
         Ok(())
     }
 
-    /// What can be said about bitmaps without any model.
-    fn compare_bitmaps(&self, findings: &mut Findings) -> Result<(), Error> {
-        let subject = self.all_sizes;
-        let sizes = 0..subject.truth.sizes.len();
-        for (glyph, gid) in subject.glyphs(self.glyphs)? {
-            let truth = subject.squares(gid)?;
-            let plain = sizes.clone().map(|size| subject.truth.plain(gid, size));
+    /// Bitmaps without any model: resized ones, unhinted ones, and ones with a wrong pixel.
+    fn compare_bitmaps(&self, results: &mut StudyResults) -> Result<(), Error> {
+        let dataset = self.all_sizes;
+        let sizes = 0..dataset.truth.sizes.len();
+        for (glyph, gid) in dataset.glyphs(self.glyphs)? {
+            let truth = dataset.squares(gid)?;
+            let plain = sizes.clone().map(|size| dataset.truth.plain(gid, size));
             let plain = plain.collect::<Result<Vec<_>, _>>()?;
-            findings.unhinted.extend(measure(UNHINTED, subject, glyph, &truth, &plain)?);
+            results.unhinted.extend(measure(UNHINTED, dataset, glyph, &truth, &plain)?);
             for method in Method::ALL {
-                let small = sizes.clone().map(|size| shrunk(&subject.truth, gid, size, method));
+                let small = sizes.clone().map(|size| shrunk(&dataset.truth, gid, size, method));
                 let small = small.map(|shrunk| Ok(shrunk?.0)).collect::<Result<Vec<_>, Error>>()?;
-                findings.resized.extend(measure(method.name(), subject, glyph, &truth, &small)?);
+                results.resized.extend(measure(method.name(), dataset, glyph, &truth, &small)?);
             }
         }
-        for (glyph, gid) in subject.glyphs(self.ablated)? {
-            let truth = subject.truth.hinted(gid, 0)?;
+        for (glyph, gid) in dataset.glyphs(self.ablated)? {
+            let truth = dataset.truth.hinted(gid, 0)?;
             let (wrong, at) = single_wrong_pixel(&truth);
             let mse = pixel_error(&truth, &wrong)?.mse;
-            findings.wrong_pixel.extend(at.map(|at| WrongPixel { glyph, truth, wrong, at, mse }));
+            results.wrong_pixel.extend(at.map(|at| WrongPixel { glyph, truth, wrong, at, mse }));
         }
         Ok(())
     }
 
-    fn store(&self, bench: &Bench<'_>, findings: &mut Findings) -> Result<(), Error> {
-        let subject = &self.fonts[0];
-        for glyph in subject.glyphs(self.stored)? {
+    fn store(&self, context: &Experiment<'_>, results: &mut StudyResults) -> Result<(), Error> {
+        let dataset = &self.fonts[0];
+        for glyph in dataset.glyphs(self.stored)? {
             // The training is there already: it is one of the first.
-            let again = Bench {
-                settings: bench.settings.clone(),
-                device: bench.device.clone(),
-                directory: bench.directory.clone(),
+            let again = Experiment {
+                settings: context.settings.clone(),
+                device: context.device.clone(),
+                directory: context.directory.clone(),
                 resume: true,
-                ..*bench
+                ..*context
             };
-            let (before, network) = implicit(&again, subject, glyph, &[])?;
-            findings.stored.extend(store(bench, subject, glyph, &network, &before)?);
+            let (before, network) = implicit(&again, dataset, glyph, &[])?;
+            results.stored.extend(store(context, dataset, glyph, &network, &before)?);
         }
         Ok(())
     }
@@ -195,23 +200,23 @@ impl Plan<'_> {
 ///
 /// # Errors
 ///
-/// As [`weights`], [`font`] and [`drawn`].
+/// As [`network_weights`], [`stored_font`] and [`render_stored`].
 pub fn store(
-    bench: &Bench<'_>,
-    subject: &Subject,
-    glyph: Glyph,
-    network: &super::implicit::Implicit,
-    before: &Outcome,
-) -> Result<[Stored; 2], Error> {
-    let weights = weights(network, bench.settings.implicit, subject, glyph)?;
-    let seen = cropped(&weights.sizes, &before.drawn);
-    let before = Outcome::new(&before.model, subject, glyph, seen)?.mse();
+    context: &Experiment<'_>,
+    dataset: &Dataset,
+    glyph: CharGlyph,
+    network: &Implicit,
+    before: &Evaluation,
+) -> Result<[StoredResult; 2], Error> {
+    let weights = network_weights(network, context.settings.implicit, dataset, glyph)?;
+    let visible = cropped(&weights.sizes, &before.drawn);
+    let mse_before = Evaluation::new(&before.model, dataset, glyph, visible)?.mse();
     let one = |precision: Precision| {
-        let file = font(subject, &[(glyph, weights.clone())], precision, bench.settings.seed)?;
-        let (squares, bytes) = drawn(&file, subject, glyph)?;
+        let file = stored_font(dataset, &[(glyph, weights.clone())], precision, context.settings.seed)?;
+        let (squares, bytes) = render_stored(&file, dataset, glyph)?;
         let bits = precision.bits();
-        let outcome = Outcome::new(&format!("implicit at {bits} bits"), subject, glyph, squares)?;
-        Ok::<_, Error>(Stored { glyph: glyph.0, bits, bytes, outcome, before })
+        let evaluation = Evaluation::new(&format!("implicit at {bits} bits"), dataset, glyph, squares)?;
+        Ok::<_, Error>(StoredResult { glyph: glyph.0, bits, bytes, evaluation, mse_before })
     };
     Ok([one(Precision::Sixteen)?, one(Precision::Eight)?])
 }

@@ -8,8 +8,8 @@ use nfr_convert::error::Error;
 ///
 /// # Errors
 ///
-/// `Unsupported` for a tensor of numbers of another type, which a device may have chosen, or of another size. Whoever took
-/// such a tensor for an empty one would draw a blank picture, and measure its error.
+/// `Unsupported` for a tensor of numbers of another type, which a device may have chosen, or of another size. Taking
+/// such a tensor for an empty one would measure the error of a blank picture.
 pub(super) fn values<E: Element>(data: &TensorData, count: usize) -> Result<Vec<E>, Error> {
     let (found, shape) = (data.dtype(), data.shape().clone());
     match data.try_to_vec::<E>() {

@@ -1,39 +1,42 @@
-//! What the experiments share, on one glyph and a few epochs.
+//! The experiments on one glyph and a few epochs.
 
 use burn::tensor::{Device, Tensor};
 
-use super::Square;
-use super::bench::{Bench, Subject};
-use super::family::{Member, train as train_family};
+use super::SquareBitmap;
+use super::dataset::Dataset;
+use super::evaluation::ClassAccuracy;
+use super::experiment::Experiment;
+use super::family::{FamilyMember, train as train_family};
 use super::implicit::{Implicit, ImplicitConfig, Statistics, focal_loss};
-use super::interpolation::{Aim, interpolate, names};
+use super::interpolation::{InterpolationTarget, interpolate, names};
 use super::masked::{Enlarged, masked_loss};
-use super::samples::ImplicitSet;
-use super::scale::{Scale, Settings};
-use super::single::{Ablation, Choices, Model, implicit, train};
-use super::stored::{font, weights};
+use super::memorisation::{implicit, train};
+use super::network_variant::{Ablation, NetworkVariant};
+use super::samples::ImplicitSamples;
+use super::settings::{ExperimentScale, Settings};
+use super::stored_network::{network_weights, stored_font};
 use super::study::store;
-use nfr::internals::model::network::Network;
-use nfr::internals::table::Precision;
+use nfr::internals::network::Network;
+use nfr::internals::network::Precision;
 use nfr_convert::Error;
 
 /// The set of the fit rule in these tests.
 const SET: &str = "abcdefghijklmnopqrstuvwxyz";
 
-fn subjects(names: &[&str], sides: &[usize]) -> Vec<Subject> {
+fn datasets(names: &[&str], sides: &[usize]) -> Vec<Dataset> {
     let read = |name: &&str| {
         let path = format!("{}/../../fonts/{name}.ttf", env!("CARGO_MANIFEST_DIR"));
         (path.clone().into(), std::fs::read(path).unwrap())
     };
-    Subject::family(names.iter().map(read).collect(), SET, sides).unwrap()
+    Dataset::family(names.iter().map(read).collect(), SET, sides).unwrap()
 }
 
-fn serif(sides: &[usize]) -> Subject {
-    subjects(&["LiberationSerif-Regular"], sides).remove(0)
+fn serif(sides: &[usize]) -> Dataset {
+    datasets(&["LiberationSerif-Regular"], sides).remove(0)
 }
 
 fn small(epochs: usize) -> Settings {
-    let scale = Settings::new(Scale::Small);
+    let scale = Settings::new(ExperimentScale::Small);
     let narrow = |config| ImplicitConfig { width: 48, latent: 8, encoder: 16, ..config };
     Settings {
         implicit: narrow(scale.implicit),
@@ -46,14 +49,14 @@ fn small(epochs: usize) -> Settings {
     }
 }
 
-fn bench<'b>(settings: Settings, directory: Option<&std::path::Path>, resume: bool) -> Bench<'b> {
-    Bench {
+fn context<'b>(settings: Settings, directory: Option<&std::path::Path>, resume: bool) -> Experiment<'b> {
+    Experiment {
         settings,
         device: Device::flex().autodiff(),
         jobs: 2,
         directory: directory.map(Into::into),
         resume,
-        tell: &|_, _, _| (),
+        on_progress: &|_, _, _| (),
     }
 }
 
@@ -104,81 +107,90 @@ const MEMORISED: f64 = 0.0005;
 
 #[test]
 fn each_network_memorises_a_glyph_at_two_sizes() {
-    let subject = serif(&[20, 26]);
-    let glyph = subject.glyphs("l").unwrap()[0];
-    let bench = bench(small(800), None, false);
-    for model in [Model::Implicit(Vec::new()), Model::Masked] {
-        let outcome = train(&bench, &subject, glyph, &model).unwrap();
-        assert!(outcome.mse() < MEMORISED, "{}: {}", outcome.model, outcome.mse());
-        assert!(outcome.history.len() == 800 && outcome.rows.len() == 2);
-        let Some(choices) = outcome.choices else {
-            assert_eq!(model, Model::Masked);
+    let dataset = serif(&[20, 26]);
+    let glyph = dataset.glyphs("l").unwrap()[0];
+    let context = context(small(800), None, false);
+    for model in [NetworkVariant::Implicit(Vec::new()), NetworkVariant::Masked] {
+        let evaluation = train(&context, &dataset, glyph, &model).unwrap();
+        assert!(evaluation.mse() < MEMORISED, "{}: {}", evaluation.model, evaluation.mse());
+        assert!(evaluation.history.len() == 800 && evaluation.rows.len() == 2);
+        let Some(class_accuracy) = evaluation.class_accuracy else {
+            assert_eq!(model, NetworkVariant::Masked);
             continue;
         };
-        assert_eq!(choices.pixels, 20 * 20 + 26 * 26);
-        assert!(choices.wrong > 0 || (outcome.mse() - choices.rounding).abs() < 1e-9, "{choices:?}");
+        assert_eq!(class_accuracy.pixels, 20 * 20 + 26 * 26);
+        assert!(
+            class_accuracy.wrong > 0 || (evaluation.mse() - class_accuracy.rounding).abs() < 1e-9,
+            "{class_accuracy:?}"
+        );
     }
 }
 
 #[test]
 fn choices_are_counted_against_the_classes_below_the_truth() {
-    let square = |pixels: &[u8]| Square { side: 2, pixels: pixels.to_vec() };
+    let square = |pixels: &[u8]| SquareBitmap { side: 2, pixels: pixels.to_vec() };
     // 127 is in the class of 45 %, which is drawn as 115; the others stand for their classes.
     let truth = [square(&[0, 255, 127, 26]), square(&[0, 0, 0, 255])];
-    let choices = Choices::new(&truth, &[square(&[0, 255, 115, 13]), square(&[0, 0, 13, 255])]).unwrap();
-    assert_eq!((choices.pixels, choices.wrong), (8, 2));
+    let class_accuracy =
+        ClassAccuracy::new(&truth, &[square(&[0, 255, 115, 13]), square(&[0, 0, 13, 255])]).unwrap();
+    assert_eq!((class_accuracy.pixels, class_accuracy.wrong), (8, 2));
     let of_level = |levels: f64| (levels / 255.0).powi(2) / 4.0 / 2.0;
-    assert!((choices.rounding - of_level(12.0)).abs() < 1e-12);
-    assert!((choices.mse - 2.0 * of_level(13.0)).abs() < 1e-12);
+    assert!((class_accuracy.rounding - of_level(12.0)).abs() < 1e-12);
+    assert!((class_accuracy.mse - 2.0 * of_level(13.0)).abs() < 1e-12);
 }
 
 #[test]
 fn every_ablation_trains_and_leaves_out_what_it_says() {
-    let subject = serif(&[20, 24, 28, 32]);
-    let glyph = subject.glyphs("a").unwrap()[0];
-    let bench = bench(small(2), None, false);
+    let dataset = serif(&[20, 24, 28, 32]);
+    let glyph = dataset.glyphs("a").unwrap()[0];
+    let context = context(small(2), None, false);
     let parameters = |config| Implicit::parameters(config);
-    let whole = bench.settings.implicit;
+    let whole = context.settings.implicit;
     for part in Ablation::ALL {
-        let (outcome, network) = implicit(&bench, &subject, glyph, &[part]).unwrap();
-        assert_eq!(outcome.model, format!("implicit without {}", part.name()));
-        assert!(outcome.history.iter().all(|epoch| epoch.loss.is_finite()));
+        let (evaluation, network) = implicit(&context, &dataset, glyph, &[part]).unwrap();
+        assert_eq!(evaluation.model, format!("implicit without {}", part.name()));
+        assert!(evaluation.history.iter().all(|epoch| epoch.loss.is_finite()));
         use burn::module::Module;
         let config = part.apply(whole);
-        // The running statistics of batch normalisation are numbers that are not learnt.
+        // The running statistics of batch normalisation are numbers, but not parameters.
         assert_eq!(network.num_params(), parameters(config) + 3 * 2 * config.width);
         let fewer = matches!(part, Ablation::Frequencies | Ablation::Size);
         assert_eq!(parameters(config) < parameters(whole), fewer, "{part:?}");
     }
     // 11 layers 784 wide, the first for 130 numbers, 21 classes, three normalisations: 25 MB, 24 MiB.
     let published = 131 * 784 + 10 * 785 * 784 + 785 * 21 + 3 * 2 * 784;
-    assert_eq!(parameters(ImplicitConfig { size: false, ..Settings::new(Scale::Paper).implicit }), published);
+    assert_eq!(
+        parameters(ImplicitConfig { size: false, ..Settings::new(ExperimentScale::Paper).implicit }),
+        published
+    );
 }
 
 #[test]
 fn a_training_that_was_interrupted_ends_as_one_that_was_not() {
-    let subject = serif(&[20, 26]);
-    let glyph = subject.glyphs("l").unwrap()[0];
+    let dataset = serif(&[20, 26]);
+    let glyph = dataset.glyphs("l").unwrap()[0];
     let directory = tempfile::tempdir().unwrap();
-    let whole = train(&bench(small(6), None, false), &subject, glyph, &Model::Implicit(Vec::new())).unwrap();
-    // Stopped after four epochs by a full disk, say: what it had saved is what a course of six has after four.
+    let whole =
+        train(&context(small(6), None, false), &dataset, glyph, &NetworkVariant::Implicit(Vec::new()))
+            .unwrap();
+    // Stopped after four epochs by a full disk, say: what it had saved is what a schedule of six has after four.
     let stopped = std::cell::Cell::new(0);
     let settings = small(6);
-    let course = settings.implicit_course(settings.implicit);
-    let set = ImplicitSet::new(
-        subject.samples(glyph.1, None).unwrap(),
+    let schedule = settings.implicit_schedule(settings.implicit);
+    let set = ImplicitSamples::new(
+        dataset.samples(glyph.1, None).unwrap(),
         2,
         settings.implicit,
         &Device::flex().autodiff(),
     );
     let checkpoint = |resume| {
         let path = directory.path().join("checkpoint");
-        super::train::checkpoint::Checkpoint::new(path, b"what is learnt", resume).unwrap()
+        super::train::checkpoint::Checkpoint::new(path, b"description", resume).unwrap()
     };
-    let network = || Implicit::new(settings.implicit, course.seed, &Device::flex().autodiff());
-    let first = super::train::Run::new(network());
+    let network = || Implicit::new(settings.implicit, schedule.seed, &Device::flex().autodiff());
+    let first = super::train::Training::new(network());
     let result = first.train(
-        &course,
+        &schedule,
         set.len(),
         |numbers| set.batch(numbers),
         |run| {
@@ -190,22 +202,22 @@ fn a_training_that_was_interrupted_ends_as_one_that_was_not() {
     assert!(result.is_err());
     let resumed = checkpoint(true).begin(network()).unwrap();
     assert_eq!(resumed.history.len(), 4);
-    let resumed = resumed.train(&course, set.len(), |numbers| set.batch(numbers), |_| Ok(())).unwrap();
+    let resumed = resumed.train(&schedule, set.len(), |numbers| set.batch(numbers), |_| Ok(())).unwrap();
     let losses = |history: &[super::train::Epoch]| history.iter().map(|epoch| epoch.loss).collect::<Vec<_>>();
     assert_eq!(losses(&resumed.history), losses(&whole.history));
     let scores = |network: &Implicit| values(network.forward(&set.batch(&[0]).0, Statistics::Batch));
-    let (_, straight) = implicit(&bench(small(6), None, false), &subject, glyph, &[]).unwrap();
+    let (_, straight) = implicit(&context(small(6), None, false), &dataset, glyph, &[]).unwrap();
     assert_eq!(scores(&resumed.network), scores(&straight));
 }
 
 #[test]
 fn a_checkpoint_of_something_else_or_a_damaged_one_is_refused_and_kept() {
-    let subject = serif(&[20, 26]);
-    let glyph = subject.glyphs("l").unwrap()[0];
+    let dataset = serif(&[20, 26]);
+    let glyph = dataset.glyphs("l").unwrap()[0];
     let directory = tempfile::tempdir().unwrap();
     let run = |settings: Settings, resume| {
-        let bench = bench(settings, Some(directory.path()), resume);
-        train(&bench, &subject, glyph, &Model::Masked).map(|outcome| outcome.rows)
+        let context = context(settings, Some(directory.path()), resume);
+        train(&context, &dataset, glyph, &NetworkVariant::Masked).map(|evaluation| evaluation.rows)
     };
     let rows = run(small(2), false).unwrap();
     let path = directory.path().join("masked/LiberationSerif-Regular/u006c/checkpoint");
@@ -225,44 +237,46 @@ fn a_checkpoint_of_something_else_or_a_damaged_one_is_refused_and_kept() {
         std::fs::write(&path, &bytes[..at]).unwrap();
         refused(small(2), true, "damaged");
     }
-    assert_eq!(std::fs::read(&path).unwrap().len(), bytes.len() - 1, "it is still there");
+    assert_eq!(std::fs::read(&path).unwrap().len(), bytes.len() - 1, "the file is kept");
 }
 
 #[test]
 fn a_network_in_a_font_draws_what_it_drew_in_training() {
-    let subject = serif(&[20, 26, 32]);
-    let glyph = subject.glyphs("l").unwrap()[0];
-    let bench = bench(small(60), None, false);
-    let (outcome, network) = implicit(&bench, &subject, glyph, &[]).unwrap();
-    let stored = weights(&network, bench.settings.implicit, &subject, glyph).unwrap();
+    let dataset = serif(&[20, 26, 32]);
+    let glyph = dataset.glyphs("l").unwrap()[0];
+    let context = context(small(60), None, false);
+    let (evaluation, network) = implicit(&context, &dataset, glyph, &[]).unwrap();
+    let stored = network_weights(&network, context.settings.implicit, &dataset, glyph).unwrap();
     let evaluated = Network::new(stored.clone()).unwrap();
-    for (k, drawn) in outcome.drawn.iter().enumerate() {
-        let pixels = evaluated.levels(k).unwrap();
+    for (k, drawn) in evaluation.drawn.iter().enumerate() {
+        let pixels = evaluated.coverage(k).unwrap();
         let other = pixels.iter().zip(&drawn.pixels).filter(|(a, b)| a != b).count();
         // Sums in another order round differently, which can tip a pixel between two classes.
         assert!(other <= pixels.len() / 200, "{other} of {} pixels at size {k}", pixels.len());
     }
-    let [sixteen, eight] = store(&bench, &subject, glyph, &network, &outcome).unwrap();
-    assert!(sixteen.bytes > eight.bytes && eight.bytes > Implicit::parameters(bench.settings.implicit));
+    let [sixteen, eight] = store(&context, &dataset, glyph, &network, &evaluation).unwrap();
+    assert!(sixteen.bytes > eight.bytes && eight.bytes > Implicit::parameters(context.settings.implicit));
     for (stored, bound) in [(&sixteen, 0.001), (&eight, 0.01)] {
-        let (mse, before) = (stored.outcome.mse(), stored.before);
+        let (mse, before) = (stored.evaluation.mse(), stored.mse_before);
         assert!((mse - before).abs() < bound, "{mse} for {before} at {} bits", stored.bits);
     }
-    let file = font(&subject, &[(glyph, stored)], Precision::Eight, 1).unwrap();
+    let file = stored_font(&dataset, &[(glyph, stored)], Precision::Eight, 1).unwrap();
     assert!(nfr::internals::table(&nfr::Font::new(file).unwrap()).unwrap().is_network(glyph.1.into()));
-    let told = ImplicitConfig { weight: true, ..bench.settings.implicit };
-    assert!(matches!(super::stored::shape(told), Err(Error::Unsupported(_))));
+    let conditioned = ImplicitConfig { weight: true, ..context.settings.implicit };
+    assert!(matches!(super::stored_network::architecture(conditioned), Err(Error::Unsupported(_))));
 }
 
 #[test]
 fn between_two_weights_our_model_is_nearer_to_the_real_one_than_either_end() {
-    let family = subjects(&["Roboto_500Medium", "Roboto_700Bold", "Roboto_600SemiBold"], &[32, 62]);
+    let family = datasets(&["Roboto_500Medium", "Roboto_700Bold", "Roboto_600SemiBold"], &[32, 62]);
     let [medium, bold, between] = &family[..] else { panic!("three fonts") };
     assert!(family.windows(2).all(|pair| pair[0].truth.sizes == pair[1].truth.sizes), "common sizes");
-    let members = [Member { subject: medium, weight: 0.5 }, Member { subject: bold, weight: 0.7 }];
-    let aim = Aim { name: &between.name, share: 0.5, real: Some(between) };
-    let found = interpolate(&bench(small(2), None, false), "weights", &members, aim, 'a').unwrap();
-    let mse = |name: &str| found.between.iter().find(|drawing| drawing.name == name).unwrap().mse().unwrap();
+    let members =
+        [FamilyMember { dataset: medium, weight: 0.5 }, FamilyMember { dataset: bold, weight: 0.7 }];
+    let target = InterpolationTarget { name: &between.name, share: 0.5, real: Some(between) };
+    let found = interpolate(&context(small(2), None, false), "weights", &members, target, 'a').unwrap();
+    let mse =
+        |name: &str| found.between.iter().find(|rendering| rendering.name == name).unwrap().mse().unwrap();
     let ends = mse(names::FIRST).min(mse(names::LAST));
     assert!(mse(names::GRID_FIT) < ends, "{} {ends}", mse(names::GRID_FIT));
     assert!(mse(names::IMPLICIT).is_finite() && found.ends.len() == 2);
@@ -270,9 +284,12 @@ fn between_two_weights_our_model_is_nearer_to_the_real_one_than_either_end() {
 
 #[test]
 fn at_its_ends_a_family_is_its_members() {
-    let family = subjects(&["LiberationSerif-Regular", "LiberationSans-Regular"], &[20, 24]);
-    let members = [Member { subject: &family[0], weight: -1.0 }, Member { subject: &family[1], weight: 1.0 }];
-    let trained = train_family(&bench(small(3), None, false), "styles", &members, 'l').unwrap();
+    let family = datasets(&["LiberationSerif-Regular", "LiberationSans-Regular"], &[20, 24]);
+    let members = [
+        FamilyMember { dataset: &family[0], weight: -1.0 },
+        FamilyMember { dataset: &family[1], weight: 1.0 },
+    ];
+    let trained = train_family(&context(small(3), None, false), "styles", &members, 'l').unwrap();
     let [first, last] = [0, 1].map(|number| trained.member(number).unwrap());
     assert_eq!(trained.between(0, 1, 0.0).unwrap(), first);
     assert_eq!(trained.between(0, 1, 1.0).unwrap(), last);

@@ -1,4 +1,4 @@
-//! Networks survive being written and read, are drawn by the calls that draw models, and damaged ones are errors.
+//! Networks in fonts are drawn by the calls that draw models, and damaged ones are errors.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../../../benches/network/mod.rs"]
@@ -9,11 +9,10 @@ use std::sync::LazyLock;
 
 use nfr::internals::model::compose::{Composed, Part};
 use nfr::internals::model::gridfit::{Scale, Weights};
-use nfr::internals::model::network::{
-    CONDITIONED, MAX_BOX, MAX_ENCODER, MAX_LATENT, MAX_WIDTH, Network, NetworkWeights, Shape, TRUNK_LAYERS,
-};
-use nfr::internals::table::network::{Head, decode, encode};
-use nfr::internals::table::{self, Header, Precision, TAG, Table};
+use nfr::internals::network::Precision;
+use nfr::internals::network::{Architecture, CONDITIONED, Network, NetworkWeights, TRUNK_LAYERS};
+use nfr::internals::network::{Head, decode};
+use nfr::internals::table::{self, Header, TAG, Table};
 use nfr::internals::{Damage, Glyph, decode as decode_glyph, header};
 use nfr::{DrawOptions, Error, Font, Limits, Placement, Rasterizer, Target};
 use nfr_convert::writer::{self, GlyphModel, GlyphNetwork};
@@ -23,11 +22,8 @@ use read_fonts::{FontRef, TableProvider};
 use write_fonts::FontBuilder;
 
 use noise::network;
-use packed::{blocks, frame, pack, stored};
+use packed::{CONDITIONED_ARCHITECTURE, PLAIN_ARCHITECTURE, pack};
 
-const SHAPE: Shape = Shape { width: 12, latent: 5, encoder: 6, frequencies: true, residual: true };
-/// Without sizes among its inputs, and as small as can be.
-const PLAIN: Shape = Shape { width: 3, latent: 0, encoder: 0, frequencies: false, residual: false };
 const SCALE: Scale = Scale::new(1000, 8, 64).unwrap();
 const ABOUT: Header = Header {
     target: Target::Mono,
@@ -41,201 +37,6 @@ const ABOUT: Header = Header {
     rank: 0,
     cell: 0,
 };
-
-fn shape() -> impl Strategy<Value = Shape> {
-    (1u16..30, 0u16..20, 1u16..9, any::<[bool; 2]>()).prop_map(
-        |(width, latent, encoder, [frequencies, residual])| Shape {
-            width,
-            latent,
-            encoder,
-            frequencies,
-            residual,
-        },
-    )
-}
-
-fn precision() -> impl Strategy<Value = Precision> {
-    prop_oneof![Just(Precision::Eight), Just(Precision::Sixteen)]
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
-
-    #[test]
-    fn a_network_is_read_as_it_was_written_but_for_rounding(
-        shape in shape(), precision in precision(), seed in any::<u64>(),
-    ) {
-        let written = network(shape, &[8, 9, 30], seed);
-        let packed = pack(&written, precision);
-        let read = decode(&packed).unwrap();
-        let (head, frame) = Head::parse(&packed).unwrap();
-        prop_assert_eq!((head.precision, head.shape, &head.sizes), (precision, written.shape, &written.sizes));
-        prop_assert_eq!(head.numbers_len(), encode(&written, precision).unwrap().numbers.len());
-        prop_assert!(packed.ends_with(frame));
-        prop_assert_eq!((read.shape, &read.sizes, &read.norms), (written.shape, &written.sizes, &written.norms));
-        let most = if precision == Precision::Eight { 127.0 } else { 32767.0 };
-        for (read, written) in read.dense.iter().zip(&written.dense) {
-            prop_assert_eq!(&read.bias, &written.bias);
-            for output in 0..written.outputs {
-                let column = |weights: &[f32]| -> Vec<f32> {
-                    weights.iter().skip(output).step_by(written.outputs).copied().collect()
-                };
-                let (read, written) = (column(&read.weights), column(&written.weights));
-                let largest = written.iter().fold(0f32, |largest, weight| largest.max(weight.abs()));
-                for (read, written) in read.iter().zip(&written) {
-                    prop_assert!((read - written).abs() <= largest / most * 0.505);
-                }
-            }
-        }
-        // What was rounded once is rounded to the same again.
-        let again = decode(&pack(&read, precision)).unwrap();
-        for (again, read) in again.dense.iter().zip(&read.dense) {
-            for (again, read) in again.weights.iter().zip(&read.weights) {
-                prop_assert!((again - read).abs() <= 1e-6 * read.abs());
-            }
-        }
-    }
-
-    #[test]
-    fn a_network_that_is_cut_off_or_too_long_is_malformed(
-        shape in shape(), precision in precision(), at in any::<prop::sample::Index>(),
-    ) {
-        let mut bytes = pack(&network(shape, &[8], 1), precision);
-        prop_assert!(matches!(decode(&bytes[..at.index(bytes.len())]), Err(Damage::Malformed(_))));
-        bytes.push(0);
-        prop_assert!(matches!(decode(&bytes), Err(Damage::Malformed(_))));
-    }
-
-    #[test]
-    fn random_bytes_are_a_network_or_an_error(
-        mut bytes in prop::collection::vec(any::<u8>(), 0..3000), likely in any::<bool>(),
-    ) {
-        if likely && bytes.len() > 9 {
-            bytes[..9].copy_from_slice(&[3, 8, 0, 1, 0, 0, 0, 0, 1]);
-            let small = Shape { width: 1, latent: 0, encoder: 0, ..SHAPE };
-            let encoded = encode(&network(small, &[8], 1), Precision::Eight).unwrap();
-            bytes.truncate(encoded.head.len());
-            bytes.resize(encoded.head.len(), 7);
-            bytes.extend(stored(&vec![7; encoded.numbers.len()]));
-        }
-        match decode(&bytes) {
-            Ok(weights) => prop_assert!(Network::new(weights).is_ok()),
-            Err(Damage::Malformed(_) | Damage::TooLarge { .. }) => {}
-        }
-    }
-}
-
-#[test]
-fn weights_of_0_and_huge_ones_can_be_stored() {
-    let mut weights = network(PLAIN, &[8], 1);
-    weights.dense[1].weights.fill(0.0);
-    weights.dense[2].weights.fill(f32::MAX);
-    weights.dense[3].weights.fill(f32::MIN_POSITIVE / 8.0);
-    for precision in [Precision::Eight, Precision::Sixteen] {
-        let read = decode(&pack(&weights, precision)).unwrap();
-        assert_eq!(read.dense[1].weights, weights.dense[1].weights);
-        assert!(read.dense[2].weights.iter().all(|weight| *weight > 0.99 * f32::MAX));
-        assert!(Network::new(read).unwrap().levels(0).is_some());
-    }
-}
-
-/// A network, changed at some places of its bytes before they are packed.
-fn changed(weights: &NetworkWeights, changes: &[(usize, &[u8])]) -> Result<NetworkWeights, Damage> {
-    let encoded = encode(weights, Precision::Eight).unwrap();
-    let mut bytes = [&encoded.head[..], &encoded.numbers].concat();
-    for (at, value) in changes {
-        bytes[*at..][..value.len()].copy_from_slice(value);
-    }
-    let (head, numbers) = bytes.split_at(encoded.head.len());
-    decode(&[head, &frame(numbers)].concat())
-}
-
-#[test]
-fn what_is_beyond_the_limits_is_refused_before_it_is_read() {
-    let weights = network(SHAPE, &[8, 9], 1);
-    assert!(changed(&weights, &[]).is_ok());
-    let limits = [(2, MAX_WIDTH), (4, MAX_LATENT), (6, MAX_ENCODER)];
-    for (at, most) in limits {
-        let refused = changed(&weights, &[(at, &(most + 1).to_be_bytes())]);
-        let (asked, allowed) = (u64::from(most) + 1, u64::from(most));
-        assert!(
-            matches!(refused, Err(Damage::TooLarge { count, limit, .. }) if (count, limit) == (asked, allowed)),
-            "{refused:?}"
-        );
-        // Within the limits there are too few bytes.
-        assert!(matches!(changed(&weights, &[(at, &most.to_be_bytes())]), Err(Damage::Malformed(_))), "{at}");
-    }
-    for at in [2, 6] {
-        let refused = changed(&weights, &[(at, &[0, 0])]);
-        assert!(
-            matches!(refused, Err(Damage::Malformed(why)) if why.contains("without features")),
-            "{refused:?}"
-        );
-    }
-    const FIRST_SIZE: usize = 9;
-    let malformed: [(usize, &[u8]); 10] = [
-        (0, &[4]),
-        (1, &[4]),
-        (8, &[0]),
-        (8, &[65]),
-        (FIRST_SIZE, &[0, 0]),
-        (FIRST_SIZE, &[4, 1]),
-        (FIRST_SIZE + 2, &[0]),
-        (FIRST_SIZE + 2, &[12]),
-        (FIRST_SIZE + 7, &[3]),
-        (FIRST_SIZE + 10, &[10]),
-    ];
-    for (at, bytes) in malformed {
-        assert!(matches!(changed(&weights, &[(at, bytes)]), Err(Damage::Malformed(_))), "{bytes:?} at {at}");
-    }
-    // The first scale, whose bytes stand apart: not a number, and one that makes weights infinite.
-    const NUMBERS: usize = FIRST_SIZE + 22;
-    let outputs: usize = weights.dense.iter().map(|dense| dense.outputs).sum();
-    let floats = 2 * outputs + 6 * usize::from(SHAPE.width);
-    for second in [0xc0, 0x7f] {
-        let scale: [(usize, &[u8]); 2] = [(NUMBERS, &[0x7f]), (NUMBERS + floats, &[second])];
-        let refused = changed(&weights, &scale);
-        assert!(matches!(&refused, Err(Damage::Malformed(why)) if why.contains("finite")), "{refused:?}");
-    }
-    let box_too_large = [(FIRST_SIZE + 13, [MAX_BOX + 1].as_slice())];
-    assert!(matches!(changed(&weights, &box_too_large), Err(Damage::Malformed(_))));
-}
-
-#[test]
-fn a_frame_that_holds_something_else_than_it_has_to_is_refused() {
-    let encoded = encode(&network(SHAPE, &[8], 1), Precision::Eight).unwrap();
-    let with = |frame: &[u8]| decode(&[&encoded.head[..], frame].concat());
-    let length = encoded.numbers.len();
-    assert!(with(&frame(&encoded.numbers)).is_ok() && with(&stored(&encoded.numbers)).is_ok());
-    let refused = |frame: &[u8], what: &str| {
-        let refused = with(frame);
-        assert!(matches!(&refused, Err(Damage::Malformed(why)) if why.contains(what)), "{what}: {refused:?}");
-    };
-    refused(&stored(&encoded.numbers[1..]), "not as many numbers");
-    // More than the window may be, which is checked before anything is allocated.
-    refused(&stored(&[&encoded.numbers[..], &[0]].concat()), "cannot be unpacked");
-    // Frames that say that they hold what they should, and hold more or less.
-    let claims = |numbers: &[u8]| [packed::header(length), blocks(numbers)].concat();
-    refused(&claims(&encoded.numbers[..length - 1]), "fewer numbers than it says");
-    refused(&claims(&vec![0; length + 1]), "more numbers than it says");
-    refused(&claims(&vec![0; 100 * length]), "more numbers than it says");
-    refused(&[frame(&encoded.numbers), frame(&encoded.numbers)].concat(), "behind them");
-    // Without a size of its contents, with a dictionary, one to skip, and of another format.
-    refused(
-        &ruzstd::encoding::compress_to_vec(&encoded.numbers[..], ruzstd::encoding::CompressionLevel::Fastest),
-        "",
-    );
-    let mut dictionary = packed::header(length);
-    dictionary[4] |= 1;
-    dictionary.insert(5, 9);
-    refused(&[dictionary, blocks(&encoded.numbers)].concat(), "cannot be unpacked");
-    refused(
-        &[&[0x50, 0x2a, 0x4d, 0x18, 2, 0, 0, 0, 1, 2][..], &frame(&encoded.numbers)].concat(),
-        "cannot be unpacked",
-    );
-    refused(&[0x1f, 0x8b, 8, 0, 0, 0, 0, 0], "cannot be unpacked");
-    refused(&[], "cannot be unpacked");
-}
 
 /// The bytes of Liberation Sans.
 fn sans() -> Vec<u8> {
@@ -254,15 +55,15 @@ struct Stored {
 static NETWORKS: LazyLock<[Stored; 3]> = LazyLock::new(|| {
     let sans = sans();
     let cmap = FontRef::new(&sans).unwrap().cmap().unwrap();
-    let of = |letter: char, shape, ppems: &[u16], precision| {
+    let of = |letter: char, architecture, ppems: &[u16], precision| {
         let gid = cmap.map_codepoint(letter).unwrap().to_u32();
-        let weights = network(shape, ppems, u64::from(gid));
+        let weights = network(architecture, ppems, u64::from(gid));
         Stored { gid, bytes: pack(&weights, precision), weights, precision }
     };
     [
-        of('a', SHAPE, &[8, 12, 20], Precision::Eight),
-        of('b', PLAIN, &[9, 12], Precision::Eight),
-        of('c', Shape { residual: false, ..SHAPE }, &[12, 40], Precision::Sixteen),
+        of('a', CONDITIONED_ARCHITECTURE, &[8, 12, 20], Precision::Eight),
+        of('b', PLAIN_ARCHITECTURE, &[9, 12], Precision::Eight),
+        of('c', Architecture { residual: false, ..CONDITIONED_ARCHITECTURE }, &[12, 40], Precision::Sixteen),
     ]
 });
 
@@ -317,12 +118,12 @@ fn all_calls_draw_the_part_of_the_box_that_the_size_names() {
         for (index, size) in network.weights.sizes.iter().enumerate() {
             let (side, ppem) = (usize::from(size.side), f32::from(size.ppem));
             let placement = rasterizer.placement(network.gid, ppem).unwrap();
-            // The crop leaves a border of one pixel; the pen is two pixels from the left, the baseline three rows from
+            // The crop leaves a border of one pixel; the origin is two pixels from the left, the baseline three rows from
             // the end.
             let length = u32::from(size.side) - 2;
             let expected = Placement { left: -1, top: length as i32 - 2, width: length, height: length };
             assert_eq!(placement, expected);
-            let levels = whole.levels(index).unwrap();
+            let levels = whole.coverage(index).unwrap();
             let rows = levels.chunks(side).skip(1).take(side - 2);
             let pixels: Vec<u8> = rows.flat_map(|row| row[1..side - 1].to_vec()).collect();
             let drawn = rasterizer.render(network.gid, ppem).unwrap();
@@ -363,13 +164,13 @@ fn a_size_that_was_not_trained_is_an_error_that_names_it() {
 fn whole_pixels_move_the_box_and_parts_of_one_are_an_error() {
     let font = Font::new(SANS.as_slice()).unwrap();
     let glyph = decode_glyph(&font, NETWORKS[1].gid).unwrap();
-    let still = glyph.render(12.0).unwrap();
+    let unmoved = glyph.render(12.0).unwrap();
     let moved = glyph.render(DrawOptions::new(12.0).with_offset([-3.0, 5.0])).unwrap();
     assert_eq!(
         (moved.placement.left, moved.placement.top),
-        (still.placement.left - 3, still.placement.top + 5)
+        (unmoved.placement.left - 3, unmoved.placement.top + 5)
     );
-    assert_eq!(moved.pixels, still.pixels);
+    assert_eq!(moved.pixels, unmoved.pixels);
     for offset in [[0.25, 0.0], [0.0, -0.5]] {
         let refused = glyph.render(DrawOptions::new(12.0).with_offset(offset));
         assert_eq!(refused, Err(Error::NetworkOffset { glyph: NETWORKS[1].gid, offset }));
@@ -378,7 +179,7 @@ fn whole_pixels_move_the_box_and_parts_of_one_are_an_error() {
 
 #[test]
 fn the_first_of_several_sizes_of_one_ppem_is_drawn() {
-    let mut weights = network(SHAPE, &[10, 12, 20], 4);
+    let mut weights = network(CONDITIONED_ARCHITECTURE, &[10, 12, 20], 4);
     weights.sizes[2].ppem = 12;
     let drawn = Glyph::of_network(Network::new(weights).unwrap()).render(12.0).unwrap();
     assert_eq!(drawn.placement.width, 12);
@@ -386,7 +187,7 @@ fn the_first_of_several_sizes_of_one_ppem_is_drawn() {
 
 #[test]
 fn a_glyph_without_ink_has_no_pixels() {
-    let mut weights = network(SHAPE, &[10], 4);
+    let mut weights = network(CONDITIONED_ARCHITECTURE, &[10], 4);
     weights.sizes[0].crop = [3, 3, 0, 0];
     let drawn = Glyph::of_network(Network::new(weights).unwrap()).render(10.0).unwrap();
     assert_eq!((drawn.placement, drawn.pixels.len()), (Placement::default(), 0));
@@ -409,9 +210,9 @@ fn a_cache_that_holds_no_network_still_draws_them_all() {
 /// The steps of drawing a box: a multiplication for each weight of the trunk and each pixel.
 fn work(weights: &NetworkWeights, side: u8) -> u64 {
     let trunk = &weights.dense[weights.dense.len() - TRUNK_LAYERS..];
-    let latent = u64::from(weights.shape.latent);
+    let latent = u64::from(weights.architecture.latent);
     let multiplied: u64 = trunk.iter().map(|dense| dense.weights.len() as u64).sum();
-    // What a size gives to two layers is added to all pixels of the box alike.
+    // The latent vector's share of two layers is computed once for all pixels of the box.
     let constant = CONDITIONED.map(|layer| latent * trunk[layer].outputs as u64).iter().sum::<u64>();
     (multiplied - constant) * u64::from(side) * u64::from(side)
 }
@@ -443,16 +244,18 @@ fn models_composed_glyphs_and_networks_share_a_table() {
     let models = [1, 7].map(|gid| GlyphModel { gid, weights: Weights::default() });
     let part = Part { gid: 7, ..Part::default() };
     let composed = [Composed { gid: 5, parts: vec![part] }];
-    let networks = [2u16, 6, 900]
-        .map(|gid| GlyphNetwork { gid, bytes: pack(&network(PLAIN, &[8], gid.into()), Precision::Sixteen) });
+    let networks = [2u16, 6, 900].map(|gid| GlyphNetwork {
+        gid,
+        bytes: pack(&network(PLAIN_ARCHITECTURE, &[8], gid.into()), Precision::Sixteen),
+    });
     let write = |networks: &[GlyphNetwork]| writer::write(&ABOUT, &models, &composed, networks, SCALE);
     let (bytes, lengths) = write(&networks).unwrap();
     let table = Table::parse(&bytes).unwrap();
     assert_eq!((table.header(), lengths.len()), (&ABOUT, 2));
     assert_eq!(table.gids().collect::<Vec<_>>(), [1, 2, 5, 6, 7, 900]);
     assert_eq!((table.gids().len(), table.network_gids().len()), (6, 3));
-    let places = table.places(5, SCALE, usize::MAX).unwrap();
-    assert_eq!(table.parts(5, SCALE, &places).unwrap(), composed[0].parts);
+    let offsets = table.part_offsets(5, SCALE, usize::MAX).unwrap();
+    assert_eq!(table.parts(5, SCALE, &offsets).unwrap(), composed[0].parts);
     for gid in table.gids().map(u32::from) {
         assert!(table.contains(gid));
         assert_eq!(table.is_network(gid), networks.iter().any(|network| u32::from(network.gid) == gid));
@@ -520,7 +323,7 @@ proptest! {
     ) {
         let mut data = SANS.clone();
         let range = table_range();
-        // Near: among counts, ends, and the first network's shape and sizes.
+        // Near: among counts, ends, and the first network's architecture and sizes.
         let length = if near { NETWORKS_AT + 80 } else { range.len() };
         for (at, value) in damage {
             data[range.start + at.index(length)] = value;

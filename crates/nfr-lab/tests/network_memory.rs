@@ -1,63 +1,27 @@
-//! What reading networks allocates, counted by a global allocator of this file's own.
-#![allow(unsafe_code, reason = "a global allocator is unsafe to implement")]
+//! The memory that reading networks allocates.
 #![allow(clippy::unwrap_used)]
 
 #[path = "../../../benches/network/mod.rs"]
 mod noise;
 mod packed;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
-use nfr::internals::model::network::{MAX_ENCODER, MAX_LATENT, MAX_WIDTH, Network, Shape};
-use nfr::internals::table::network::{Head, decode, encode};
-use nfr::internals::table::{Header, Precision};
+use nfr::internals::network::Precision;
+use nfr::internals::network::{Architecture, MAX_ENCODER, MAX_LATENT, MAX_WIDTH, Network};
+use nfr::internals::network::{Head, decode, encode};
+use nfr::internals::table::Header;
 use nfr::{Error, Font, Limits, Rasterizer};
 use nfr_convert::writer::GlyphNetwork;
-use nfr_lab::networks::with_networks;
+use nfr_lab::network_font::with_networks;
 use proptest::prelude::*;
 
 use noise::network;
 use packed::{blocks, frame, header, pack};
 
-/// Counts what each thread allocates on its own, so that tests beside each other do not disturb each other.
-struct Counting;
-
-thread_local! {
-    static LIVE: Cell<isize> = const { Cell::new(0) };
-    static PEAK: Cell<isize> = const { Cell::new(0) };
-}
-
-fn count(change: isize) {
-    LIVE.set(LIVE.get() + change);
-    PEAK.set(PEAK.get().max(LIVE.get()));
-}
-
-// SAFETY: every call is handed on to the system's allocator unchanged. The counters need no allocation: they are
-// initialised in place and have no destructor.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count(layout.size() as isize);
-        // SAFETY: the caller's promise is the one that the system's allocator asks for.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        count(-(layout.size() as isize));
-        // SAFETY: as above.
-        unsafe { System.dealloc(block, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-/// The most that is allocated at once while something is done.
+/// The most that is allocated at once while `work` runs.
 fn peak<T>(work: impl FnOnce() -> T) -> usize {
-    let before = LIVE.get();
-    PEAK.set(before);
-    let _kept = work();
-    usize::try_from(PEAK.get() - before).unwrap()
+    let mut kept = None;
+    let info = allocation_counter::measure(|| kept = Some(work()));
+    usize::try_from(info.bytes_max).unwrap()
 }
 
 /// What unpacking a frame takes beside its contents: tables, and the buffers of a block.
@@ -65,7 +29,7 @@ const UNPACKING: usize = 1 << 20;
 
 #[test]
 fn a_frame_that_does_not_hold_what_the_shape_needs_is_refused_before_that_much_is_allocated() {
-    let shape = Shape {
+    let architecture = Architecture {
         width: MAX_WIDTH,
         latent: MAX_LATENT,
         encoder: MAX_ENCODER,
@@ -73,7 +37,7 @@ fn a_frame_that_does_not_hold_what_the_shape_needs_is_refused_before_that_much_i
         residual: true,
     };
     // The head of a small network, made that of the largest.
-    let small = Shape { width: 1, latent: 0, encoder: 0, ..shape };
+    let small = Architecture { width: 1, latent: 0, encoder: 0, ..architecture };
     let mut head = encode(&network(small, &[8], 1), Precision::Sixteen).unwrap().head;
     for (at, number) in [(2, MAX_WIDTH), (4, MAX_LATENT), (6, MAX_ENCODER)] {
         head[at..at + 2].copy_from_slice(&number.to_be_bytes());
@@ -98,8 +62,8 @@ fn a_frame_that_does_not_hold_what_the_shape_needs_is_refused_before_that_much_i
 
 #[test]
 fn a_frame_that_holds_more_than_the_shape_needs_is_given_up_early() {
-    let shape = Shape { width: 40, latent: 7, encoder: 9, frequencies: true, residual: true };
-    let encoded = encode(&network(shape, &[8, 12], 3), Precision::Eight).unwrap();
+    let architecture = Architecture { width: 40, latent: 7, encoder: 9, frequencies: true, residual: true };
+    let encoded = encode(&network(architecture, &[8, 12], 3), Precision::Eight).unwrap();
     // 100,000 blocks of a repeated byte, 4 bytes each, that unpack to 400 MB.
     let block = [(4096u32 << 3 | 1 << 1).to_le_bytes()[..3].to_vec(), vec![0]].concat();
     let bomb = [encoded.head, header(encoded.numbers.len()), block.repeat(100_000)].concat();
@@ -123,8 +87,8 @@ fn one_network(bytes: Vec<u8>) -> Font {
 
 #[test]
 fn a_network_that_is_larger_than_a_decoded_glyph_may_be_is_refused_before_it_is_unpacked() {
-    // About 11 MiB unpacked, which is beyond the default of 8 MiB.
-    let wide = Shape { width: 512, latent: 0, encoder: 0, frequencies: true, residual: true };
+    // About 11 MiB unpacked, which is above the default of 8 MiB.
+    let wide = Architecture { width: 512, latent: 0, encoder: 0, frequencies: true, residual: true };
     let packed = pack(&network(wide, &[8], 5), Precision::Eight);
     let head = Head::parse(&packed).unwrap().0;
     let font = one_network(packed);
@@ -144,8 +108,8 @@ fn a_network_that_is_larger_than_a_decoded_glyph_may_be_is_refused_before_it_is_
 
 #[test]
 fn a_network_that_takes_too_much_work_is_refused_before_it_is_evaluated() {
-    let shape = Shape { width: 40, latent: 7, encoder: 9, frequencies: true, residual: true };
-    let font = one_network(pack(&network(shape, &[30], 6), Precision::Eight));
+    let architecture = Architecture { width: 40, latent: 7, encoder: 9, frequencies: true, residual: true };
+    let font = one_network(pack(&network(architecture, &[30], 6), Precision::Eight));
     let mut buffer = [77; 30 * 30];
     let mut draw = |work| {
         let mut limits = Limits::default();
@@ -175,8 +139,8 @@ proptest! {
         in_head in any::<bool>(),
     ) {
         let (width, latent) = if narrow { (1, 1) } else { (40, 7) };
-        let shape = Shape { width, latent, encoder: 9, frequencies: true, residual: true };
-        let encoded = encode(&network(shape, &[8, 12], 3), Precision::Eight).unwrap();
+        let architecture = Architecture { width, latent, encoder: 9, frequencies: true, residual: true };
+        let encoded = encode(&network(architecture, &[8, 12], 3), Precision::Eight).unwrap();
         let head = encoded.head.len();
         let mut bytes = [encoded.head, frame(&encoded.numbers)].concat();
         for (at, value) in damage {

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example figures [-- OPTIONS] [FONT.ttf ...]`: printable ASCII at 8–64 ppem; without fonts,
 //! the three that README speaks of. `--quality 0,25,50,75,100` prints a line for each of these settings, and
-//! `--target mono` hints in x too. `--train-ppem 8-64:2` learns from these sizes alone and tells the others' error.
-//! The error is measured on the finished files; the last but one column is against the plain outline, at sizes beyond
+//! `--target mono` hints in x too. `--train-ppem 8-64:2` learns from these sizes alone and measures the error at the others.
+//! The error is measured on the finished files; the last but one column is against the plain outline, at sizes above
 //! the trained ones.
 
 #![allow(clippy::print_stdout)]
@@ -31,7 +31,7 @@ struct Args {
     #[arg(long, value_delimiter = ',', default_value = "50")]
     quality: Vec<f32>,
     /// What to hint for
-    #[arg(long, default_value_t, value_parser = target)]
+    #[arg(long, default_value_t, value_parser = nfr_tools::target)]
     target: Target,
     /// The sizes to learn
     #[arg(long, default_value = "8-64")]
@@ -44,13 +44,8 @@ struct Args {
     unicodes: String,
 }
 
-/// Reads the name of a target.
-fn target(name: &str) -> Result<Target, String> {
-    Target::from_name(name).ok_or_else(|| format!("unknown target {name:?}; use smooth, mono or lcd"))
-}
-
-/// Sizes at which a render has to follow the plain outline.
-const BEYOND: [f32; 8] = [65.0, 72.0, 80.0, 96.0, 128.0, 160.0, 192.0, 256.0];
+/// Sizes above the trained range, at which the plain outline is drawn.
+const LARGE_SIZES: [f32; 8] = [65.0, 72.0, 80.0, 96.0, 128.0, 160.0, 192.0, 256.0];
 
 struct Silent;
 
@@ -102,23 +97,23 @@ fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>>
     let (neural, unhinted) = (&report.totals.neural.figures, &report.totals.unhinted.figures);
     let worst = report.by_glyph.first().map_or(0.0, |g| g.compared.neural.figures.mae);
     let small = report.bands.first().map_or(0.0, |b| b.compared.neural.figures.mae);
-    let beyond = beyond(&Teacher::new(&font, args.target)?, &conversion.font, &options.gids)?;
+    let large = large_size_mae(&Teacher::new(&font, args.target)?, &conversion.font, &options.gids)?;
     Ok(format!(
-        "| {path} | {quality} | {:.4} ({:.4}) | {:.2} % ({:.1} %) | {small:.4} | {worst:.4} | {:.0} | {beyond:.4} | {seconds:.0} s |",
+        "| {path} | {quality} | {:.4} ({:.4}) | {:.2} % ({:.1} %) | {small:.4} | {worst:.4} | {:.0} | {large:.4} | {seconds:.0} s |",
         neural.mae,
         unhinted.mae,
         100.0 * neural.bad16,
         100.0 * unhinted.bad16,
-        report.subject.bytes_per_glyph,
+        report.header.bytes_per_glyph,
     ))
 }
 
 /// The mean absolute error against the plain outline.
-fn beyond(teacher: &Teacher, converted: &[u8], gids: &[u16]) -> Result<f64, Box<dyn Error>> {
+fn large_size_mae(teacher: &Teacher, converted: &[u8], gids: &[u16]) -> Result<f64, Box<dyn Error>> {
     let font = Font::new(converted.to_vec())?;
     let mut rasterizer = Rasterizer::new(&font);
     let mut sums = Sums::default();
-    for (gid, ppem) in gids.iter().flat_map(|gid| BEYOND.map(|ppem| (*gid, ppem))) {
+    for (gid, ppem) in gids.iter().flat_map(|gid| LARGE_SIZES.map(|ppem| (*gid, ppem))) {
         sums.add(&teacher.unhinted(gid, ppem)?.rasterize()?, &rasterizer.render(gid.into(), ppem)?);
     }
     Ok(sums.mae())

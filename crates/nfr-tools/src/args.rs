@@ -1,4 +1,4 @@
-//! Arguments that several tools share.
+//! Options that several tools share.
 
 use std::path::{Path, PathBuf};
 

@@ -13,13 +13,13 @@ use super::files::{Output, read, same_file};
 use super::progress::{Reporter, Verbosity};
 use nfr::Target;
 use nfr_convert::compare::fonts::FontPair;
-use nfr_convert::compare::report::{Report, glyphs};
+use nfr_convert::compare::report::{Report, glyph_count_text};
 use nfr_convert::open::{has_models, open};
+use nfr_convert::options::Backend;
 use nfr_convert::partial::Partial;
 use nfr_convert::ppem::PpemList;
 use nfr_convert::select::{glyph_count, glyph_names};
 use nfr_convert::teacher::Teacher;
-use nfr_convert::train::Backend;
 use nfr_convert::{Conversion, GlyphReport, Options, Quality, resume};
 
 /// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
@@ -84,19 +84,19 @@ pub struct Args {
     verbose: bool,
 }
 
-/// The `--report`.
+/// The contents of the file of `--report`.
 #[derive(Debug, Serialize)]
-struct Written<'r> {
+struct ReportFile<'r> {
     input: String,
     output: String,
     target: &'static str,
     ppem: String,
     seed: u64,
-    glyphs: Vec<WrittenGlyph>,
+    glyphs: Vec<GlyphEntry>,
     table_bytes: usize,
     bytes_per_glyph: f64,
     /// The hint programs that the table stands in place of.
-    hint_bytes: WrittenHints,
+    hint_bytes: HintBytesEntry,
     input_bytes: usize,
     output_bytes: usize,
     mae: f64,
@@ -107,7 +107,7 @@ struct Written<'r> {
 }
 
 #[derive(Debug, Serialize)]
-struct WrittenHints {
+struct HintBytesEntry {
     glyph_programs: usize,
     fpgm: usize,
     prep: usize,
@@ -116,7 +116,7 @@ struct WrittenHints {
 }
 
 #[derive(Debug, Serialize)]
-struct WrittenGlyph {
+struct GlyphEntry {
     gid: u16,
     bytes: usize,
     composed: bool,
@@ -155,14 +155,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let partial = output.partial();
     let partial = partial.map(|path| Partial::open(&path, &input, &options, args.resume)).transpose()?;
     if let Some(found) = partial.as_ref().map(Partial::found).filter(|found| *found > 0) {
-        reporter.note(&format!("going on after {}", glyphs(found)));
+        reporter.note(&format!("going on after {}", glyph_count_text(found)));
     }
 
     let converted = resume(&input, &options, &reporter, partial.as_ref());
     let elapsed = reporter.elapsed();
     drop(reporter);
     let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
-    // What is written is what was checked: the figures are those of the finished file.
+    // The figures are those of the finished file, not of the models in memory.
     let names = [&args.input, &args.output].map(|path| path.display().to_string());
     let comparison = FontPair::open(&input, args.index, &conversion.font)?.report(
         [&names[0], &names[1]],
@@ -173,23 +173,23 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     output.write(&conversion.font)?;
     partial.map(Partial::remove).transpose()?;
 
-    let written = summary(args, &input, &conversion, &comparison, elapsed.as_secs_f64());
+    let contents = summary(args, &input, &conversion, &comparison, elapsed.as_secs_f64());
     if let Some(file) = report {
-        let json = serde_json::to_string_pretty(&written).map_err(|e| Failure::failed(e.to_string()))?;
+        let json = serde_json::to_string_pretty(&contents).map_err(|e| Failure::failed(e.to_string()))?;
         file.write((json + "\n").as_bytes())?;
     }
-    if args.quiet { Ok(()) } else { print(&written) }
+    if args.quiet { Ok(()) } else { print_summary(&contents) }
 }
 
 /// The sizes to learn, and the step between them.
 fn check_usage(args: &Args) -> Result<(RangeInclusive<u16>, u16), Failure> {
-    let clash = |a: &Path, b: &Path, what: &str| {
+    let refuse_same = |a: &Path, b: &Path, what: &str| {
         if same_file(a, b) { Err(Failure::usage(format!("{what}; write to another file"))) } else { Ok(()) }
     };
-    clash(&args.input, &args.output, "the output is the input")?;
+    refuse_same(&args.input, &args.output, "the output is the input")?;
     if let Some(report) = &args.report {
-        clash(&args.input, report, "the report is the input")?;
-        clash(&args.output, report, "the report is the output")?;
+        refuse_same(&args.input, report, "the report is the input")?;
+        refuse_same(&args.output, report, "the report is the output")?;
     }
     let (option, list) = match &args.train_ppem {
         Some(list) => ("--train-ppem", list),
@@ -247,8 +247,8 @@ fn summary<'r>(
     conversion: &Conversion,
     comparison: &'r Report,
     seconds: f64,
-) -> Written<'r> {
-    let glyph = |g: &GlyphReport| WrittenGlyph {
+) -> ReportFile<'r> {
+    let glyph = |g: &GlyphReport| GlyphEntry {
         gid: g.gid,
         bytes: g.bytes,
         composed: g.composed,
@@ -257,7 +257,7 @@ fn summary<'r>(
     };
     let figures = &comparison.totals.neural.figures;
     let hints = &conversion.hint_bytes;
-    Written {
+    ReportFile {
         input: args.input.display().to_string(),
         output: args.output.display().to_string(),
         target: args.target.name(),
@@ -265,8 +265,8 @@ fn summary<'r>(
         seed: args.seed,
         glyphs: conversion.glyphs.iter().map(glyph).collect(),
         table_bytes: conversion.table_bytes,
-        bytes_per_glyph: comparison.subject.bytes_per_glyph,
-        hint_bytes: WrittenHints {
+        bytes_per_glyph: comparison.header.bytes_per_glyph,
+        hint_bytes: HintBytesEntry {
             glyph_programs: hints.glyph_programs,
             fpgm: hints.fpgm,
             prep: hints.prep,
@@ -282,30 +282,30 @@ fn summary<'r>(
     }
 }
 
-fn print(written: &Written<'_>) -> Result<(), Failure> {
+fn print_summary(report: &ReportFile<'_>) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    let unhinted = &written.comparison.totals.unhinted.figures;
-    let composed = match written.glyphs.iter().filter(|glyph| glyph.composed).count() {
+    let unhinted = &report.comparison.totals.unhinted.figures;
+    let composed = match report.glyphs.iter().filter(|glyph| glyph.composed).count() {
         0 => String::new(),
         count => format!(", {count} of them put together from others"),
     };
-    let count = glyphs(written.glyphs.len());
-    writeln!(out, "{}: {count} at {} ppem{composed}", written.output, written.ppem)?;
-    writeln!(out, "table   {} bytes, {:.1} per glyph", written.table_bytes, written.bytes_per_glyph)?;
-    let hints = &written.hint_bytes;
+    let count = glyph_count_text(report.glyphs.len());
+    writeln!(out, "{}: {count} at {} ppem{composed}", report.output, report.ppem)?;
+    writeln!(out, "table   {} bytes, {:.1} per glyph", report.table_bytes, report.bytes_per_glyph)?;
+    let hints = &report.hint_bytes;
     writeln!(
         out,
         "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
         hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
     )?;
-    let percent = 100.0 * written.output_bytes as f64 / written.input_bytes.max(1) as f64;
+    let percent = 100.0 * report.output_bytes as f64 / report.input_bytes.max(1) as f64;
     writeln!(
         out,
         "file    {} bytes, {percent:.1} % of the original's {}",
-        written.output_bytes, written.input_bytes
+        report.output_bytes, report.input_bytes
     )?;
-    writeln!(out, "mae     {:.5} (unhinted {:.5})", written.mae, unhinted.mae)?;
-    writeln!(out, "bad16   {:.2} % (unhinted {:.2} %)", 100.0 * written.bad16, 100.0 * unhinted.bad16)?;
-    writeln!(out, "time    {:.1} s", written.seconds)?;
+    writeln!(out, "mae     {:.5} (unhinted {:.5})", report.mae, unhinted.mae)?;
+    writeln!(out, "bad16   {:.2} % (unhinted {:.2} %)", 100.0 * report.bad16, 100.0 * unhinted.bad16)?;
+    writeln!(out, "time    {:.1} s", report.seconds)?;
     Ok(())
 }

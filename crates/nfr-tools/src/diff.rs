@@ -9,10 +9,11 @@ use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read};
 use nfr_convert::compare::diff::Sources;
 use nfr_convert::compare::fonts::FontPair;
-use nfr_convert::compare::html::{self, Sample};
-use nfr_convert::compare::picture::{Row, sheet, text_line};
+use nfr_convert::compare::html::{self, SampleText};
+use nfr_convert::compare::picture::{LabelFont, SheetRow, png, sheet, text_line};
 use nfr_convert::compare::report::Report;
-use nfr_convert::compare::sample::{PANGRAM, WORD, sample};
+use nfr_convert::compare::sample_text::{PANGRAM, WORD, sample_glyphs};
+use nfr_convert::compare::source::BitmapSource;
 use nfr_convert::compare::threshold::FailOn;
 use nfr_convert::error::Error;
 use nfr_convert::ppem::PpemList;
@@ -91,15 +92,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         output.write(as_json.as_bytes())?;
     }
     if let Some(output) = page {
-        let text = sample(pair.original(), &selection, &gids, PANGRAM)?;
-        let sizes = shown(&args.ppem, |ppem| PAGE_SIZES.contains(&ppem));
+        let text = sample_glyphs(pair.original(), &selection, &gids, PANGRAM)?;
+        let sizes = sizes_to_show(&args.ppem, |ppem| PAGE_SIZES.contains(&ppem));
         let advance = |gid: u16, ppem: u16| pair.font().advance(gid.into(), ppem.into());
-        let text = Sample { gids: &text, sizes: &sizes, advance: &advance };
+        let text = SampleText { gids: &text, sizes: &sizes, advance: &advance };
         let html = pair.with_sources(&gids, |sources| html::page(&report, sources, &text))?;
         output.write(html.as_bytes())?;
     }
     if let Some(output) = picture {
-        let text = sample(pair.original(), &selection, &gids, WORD)?;
+        let text = sample_glyphs(pair.original(), &selection, &gids, WORD)?;
         output.write(&pair.with_sources(&gids, |sources| draw(args, &pair, &report, sources, &text))?)?;
     }
     let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&report));
@@ -113,13 +114,13 @@ fn page_in(directory: &Path) -> Result<Output, Failure> {
     Output::new(&directory.join("index.html"))
 }
 
-/// The usual sizes among those compared.
-fn shown(ppem: &PpemList, usual: impl Fn(u16) -> bool) -> Vec<u16> {
+/// Those of the usual sizes that were compared, or else the first ones.
+fn sizes_to_show(ppem: &PpemList, usual: impl Fn(u16) -> bool) -> Vec<u16> {
     let sizes: Vec<u16> = ppem.sizes().iter().copied().filter(|&size| usual(size)).collect();
     if sizes.is_empty() { ppem.sizes().iter().copied().take(FALLBACK_SIZES).collect() } else { sizes }
 }
 
-/// The comparison picture.
+/// The picture of `--png`.
 fn draw(
     args: &Args,
     pair: &FontPair<'_>,
@@ -129,19 +130,20 @@ fn draw(
 ) -> Result<Vec<u8>, Error> {
     let few = args.ppem.sizes().len() <= PICTURE_SIZES.len();
     let mut rows = Vec::new();
-    for ppem in shown(&args.ppem, |size| few || PICTURE_SIZES.contains(&size)) {
-        let line = |source: &dyn nfr_convert::compare::source::Source| {
+    for ppem in sizes_to_show(&args.ppem, |size| few || PICTURE_SIZES.contains(&size)) {
+        let line = |source: &dyn BitmapSource| {
             text_line(source.at(ppem)?.as_mut(), text, |gid| pair.font().advance(gid.into(), ppem.into()))
         };
-        let cells = vec![line(sources.neural)?, line(sources.truth)?, line(sources.unhinted)?];
-        rows.push(Row { label: ppem.to_string(), cells });
+        let bitmaps = vec![line(sources.neural)?, line(sources.truth)?, line(sources.unhinted)?];
+        rows.push(SheetRow { label: ppem.to_string(), bitmaps });
     }
-    let heading = |who: &str, mae: f64| format!("{who} - mae {mae:.4}");
+    let heading = |name: &str, mae: f64| format!("{name} - mae {mae:.4}");
     let totals = &report.totals;
     let headings = [
         heading("neural", totals.neural.figures.mae),
         "hinted".to_owned(),
         heading("unhinted", totals.unhinted.figures.mae),
     ];
-    sheet(&headings.each_ref().map(String::as_str), &rows, args.zoom)?.png()
+    let font = LabelFont::new(pair.original())?;
+    png(&sheet(&font, &headings.each_ref().map(String::as_str), &rows, args.zoom)?)
 }

@@ -1,4 +1,4 @@
-//! How a tool ends.
+//! Failures of tools, and exit codes.
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -8,26 +8,26 @@ use nfr_convert::error::Error;
 const FAILED: u8 = 1;
 const WRONG_USAGE: u8 = 2;
 
-/// Why a tool did not do what it was asked: a line for stderr and an exit code.
+/// A failure: a line for stderr and an exit code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failure {
     code: u8,
-    /// Empty where there is nobody to tell.
+    /// Empty for a closed pipe, which nobody reads.
     message: String,
 }
 
 impl Failure {
-    /// Something did not work: exit code 1.
+    /// A failure with exit code 1.
     pub fn failed(message: impl Into<String>) -> Self {
         Self { code: FAILED, message: message.into() }
     }
 
-    /// The arguments make no sense: exit code 2.
+    /// Wrong usage: exit code 2.
     pub fn usage(message: impl Into<String>) -> Self {
         Self { code: WRONG_USAGE, message: message.into() }
     }
 
-    /// Adds where it happened.
+    /// Prepends the place, such as a file's name.
     pub(super) fn at(self, place: impl std::fmt::Display) -> Self {
         Self { message: format!("{place}: {}", self.message), ..self }
     }
@@ -36,7 +36,7 @@ impl Failure {
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match error {
-            // The parameter is one that the person gave, and the text names it.
+            // The parameter is one from the command line, and the text names it.
             Error::InvalidParameter(what) => Self::failed(what),
             other => Self::failed(other.to_string()),
         }
@@ -53,7 +53,7 @@ impl From<nfr::Error> for Failure {
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         match error.kind() {
-            // Whoever read the output has seen enough, as `head` has.
+            // The reader of the output, such as `head`, has closed it.
             io::ErrorKind::BrokenPipe => Self::failed(""),
             _ => Self::failed(format!("cannot write to stdout ({error})")),
         }
@@ -64,7 +64,7 @@ impl From<io::Error> for Failure {
 pub fn finish(result: Result<(), Failure>) -> ExitCode {
     let Err(failure) = result else { return ExitCode::SUCCESS };
     if !failure.message.is_empty() {
-        // Nothing is left to do where stderr is closed too.
+        // A closed stderr leaves only the exit code.
         let _ = writeln!(io::stderr(), "error: {}", failure.message);
     }
     ExitCode::from(failure.code)

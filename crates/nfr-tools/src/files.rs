@@ -39,11 +39,11 @@ pub(super) fn modelled(font: &Font) -> Result<Vec<u16>, Failure> {
 #[derive(Debug)]
 pub(super) struct Output {
     path: PathBuf,
-    kind: Kind,
+    destination: Destination,
 }
 
 #[derive(Debug, PartialEq)]
-enum Kind {
+enum Destination {
     /// Written beside its place, then renamed into it.
     Regular,
     /// A pipe or a device, which must not be replaced.
@@ -51,9 +51,9 @@ enum Kind {
 }
 
 impl Output {
-    /// Makes sure that the file can be written, so that nobody works for hours in vain. Nothing is created.
+    /// Checks before the work that the file can be written. Nothing is created.
     pub(super) fn new(path: &Path) -> Result<Self, Failure> {
-        let (path, kind) = match fs::metadata(path) {
+        let (path, destination) = match fs::metadata(path) {
             Ok(metadata) if metadata.is_dir() => {
                 return Err(Failure::failed(format!(
                     "cannot write {}: it is a directory; name a file",
@@ -62,13 +62,13 @@ impl Output {
             }
             Ok(metadata) if metadata.is_file() => {
                 // A link stays, and what it points to is replaced.
-                (fs::canonicalize(path).map_err(|e| unwritable(path, &e))?, Kind::Regular)
+                (fs::canonicalize(path).map_err(|e| unwritable(path, &e))?, Destination::Regular)
             }
-            Ok(_) => (path.to_owned(), Kind::Special),
-            Err(_) => (path.to_owned(), Kind::Regular),
+            Ok(_) => (path.to_owned(), Destination::Special),
+            Err(_) => (path.to_owned(), Destination::Regular),
         };
-        let output = Self { path, kind };
-        if output.kind == Kind::Regular {
+        let output = Self { path, destination };
+        if output.destination == Destination::Regular {
             beside(&output.path).map_err(|e| unwritable(&output.path, &e))?;
         }
         Ok(output)
@@ -78,14 +78,14 @@ impl Output {
     pub(super) fn partial(&self) -> Option<PathBuf> {
         let mut name = self.path.clone().into_os_string();
         name.push(".partial");
-        (self.kind == Kind::Regular).then_some(name.into())
+        (self.destination == Destination::Regular).then_some(name.into())
     }
 
     /// Writes the file.
     pub(super) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
-        let result = match self.kind {
-            Kind::Special => fs::write(&self.path, bytes),
-            Kind::Regular => beside(&self.path).and_then(|mut file| {
+        let result = match self.destination {
+            Destination::Special => fs::write(&self.path, bytes),
+            Destination::Regular => beside(&self.path).and_then(|mut file| {
                 file.write_all(bytes)?;
                 file.as_file().sync_all()?;
                 file.persist(&self.path).map(drop).map_err(|e| e.error)
@@ -99,7 +99,7 @@ fn unwritable(path: &Path, error: &io::Error) -> Failure {
     Failure::failed(format!(
         "cannot write {} ({}); choose a place that exists and that you may write to",
         path.display(),
-        // tempfile adds the name of its file, which nobody knows.
+        // tempfile adds the name of its temporary file, which tells a user nothing.
         error.kind()
     ))
 }
@@ -153,6 +153,6 @@ mod tests {
         Output::new(&link).unwrap().write(b"new").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&file).unwrap(), b"new");
-        assert_eq!(Output::new(Path::new("/dev/null")).unwrap().kind, Kind::Special);
+        assert_eq!(Output::new(Path::new("/dev/null")).unwrap().destination, Destination::Special);
     }
 }

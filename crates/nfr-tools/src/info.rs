@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::files::{open_neural, read};
-use nfr::internals::table::{MAJOR_VERSION, MINOR_VERSION, NETWORK_MINOR_VERSION, Precision};
+use nfr::internals::network::Precision;
+use nfr::internals::table::{MAJOR_VERSION, MINOR_VERSION, NETWORK_MINOR_VERSION};
 use nfr_convert::select::glyph_count;
 
 /// Says what a neural font carries

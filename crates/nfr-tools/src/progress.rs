@@ -1,4 +1,4 @@
-//! How a conversion is going, on stderr.
+//! The progress of a conversion, on stderr.
 
 use std::collections::HashMap;
 use std::io::{self, IsTerminal, Write};
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use nfr_convert::Progress;
-use nfr_convert::compare::report::glyphs;
+use nfr_convert::compare::report::glyph_count_text;
 
 /// Without a terminal, a line this often.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
@@ -18,7 +18,7 @@ const LINE_INTERVAL: Duration = Duration::from_secs(10);
 const TICK: Duration = Duration::from_millis(250);
 const STYLE: &str = "{bar:32} {pos}/{len} glyphs  {msg}  {elapsed}, {eta} left";
 
-/// How much to tell.
+/// How much is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verbosity {
     Quiet,
@@ -27,13 +27,13 @@ pub(super) enum Verbosity {
     Verbose,
 }
 
-/// A bar on a terminal; elsewhere a plain line now and then. Dropping it stops both.
+/// A bar on a terminal, elsewhere a line every ten seconds. Dropping it stops both.
 pub(super) struct Reporter {
     verbosity: Verbosity,
     names: HashMap<u16, String>,
     bar: Option<ProgressBar>,
     state: Arc<Mutex<State>>,
-    /// Its end stops the thread that prints lines.
+    /// Dropping it stops the thread that prints lines.
     _lines: Option<Sender<()>>,
 }
 
@@ -64,7 +64,7 @@ impl Reporter {
         } else {
             let (sender, receiver) = channel();
             let state = reporter.state.clone();
-            // Glyphs come in groups, so that only the time between lines gives an even picture.
+            // Glyphs come in groups, so lines are printed by the clock and not for so many glyphs.
             thread::spawn(move || print_lines(&receiver, &state));
             reporter._lines = Some(sender);
         }
@@ -76,7 +76,7 @@ impl Reporter {
         lock(&self.state).start.elapsed()
     }
 
-    /// Says something, unless nothing is to be said.
+    /// Prints a line, unless `--quiet` is given.
     pub(super) fn note(&self, text: &str) {
         if self.verbosity != Verbosity::Quiet {
             self.line(text);
@@ -154,10 +154,15 @@ impl State {
     fn line(&self, elapsed: Duration) -> String {
         let Self { total, done, .. } = *self;
         if done == 0 {
-            return format!("0 of {} after {}", glyphs(total), duration(elapsed));
+            return format!("0 of {} after {}", glyph_count_text(total), duration(elapsed));
         }
         let left = elapsed.mul_f64(total.saturating_sub(done) as f64 / done as f64);
-        format!("{done} of {}, mae {:.4} so far, about {} left", glyphs(total), self.mae(), duration(left))
+        format!(
+            "{done} of {}, mae {:.4} so far, about {} left",
+            glyph_count_text(total),
+            self.mae(),
+            duration(left)
+        )
     }
 }
 

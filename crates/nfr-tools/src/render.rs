@@ -11,8 +11,8 @@ use super::args::SelectionArgs;
 use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read};
 use nfr::Font;
-use nfr_convert::compare::picture::{Row, sheet, specimen, text_line};
-use nfr_convert::compare::source::{Neural, Source};
+use nfr_convert::compare::picture::{LabelFont, SheetRow, png, sheet, specimen, text_line};
+use nfr_convert::compare::source::{BitmapSource, Neural};
 use nfr_convert::ppem::PpemList;
 
 /// A sheet's lines break at about this width, in pixels of the picture.
@@ -42,7 +42,7 @@ pub struct Args {
 
 /// One glyph at one size, as printed.
 #[derive(Debug, Serialize)]
-struct Line {
+struct RenderedGlyph {
     gid: u16,
     ppem: u16,
     left: i32,
@@ -71,7 +71,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let glyph = |c| font.glyph_for_char(c).and_then(|glyph| u16::try_from(glyph).ok());
         let text: Option<Vec<u16>> =
             selection.text.is_some().then(|| selection.characters().filter_map(glyph).collect());
-        draw_sheet(args, path, &font, &source, &gids, text.as_deref())?;
+        let labels = LabelFont::neural(&file, &font)?;
+        draw_sheet(args, path, &labels, &font, &source, &gids, text.as_deref())?;
     }
     if args.json {
         print_lines(args, &font, &source, &gids)?;
@@ -85,7 +86,7 @@ fn print_lines(args: &Args, font: &Font, source: &Neural, gids: &[u16]) -> Resul
         for &ppem in args.ppem.sizes() {
             let bitmap = source.at(ppem)?.bitmap(gid)?;
             let place = bitmap.placement;
-            let line = Line {
+            let line = RenderedGlyph {
                 gid,
                 ppem,
                 left: place.left,
@@ -105,6 +106,7 @@ fn print_lines(args: &Args, font: &Font, source: &Neural, gids: &[u16]) -> Resul
 fn draw_sheet(
     args: &Args,
     path: &Path,
+    labels: &LabelFont,
     font: &Font,
     source: &Neural,
     gids: &[u16],
@@ -119,8 +121,10 @@ fn draw_sheet(
             Some(text) => vec![text_line(at.as_mut(), text, advance)?],
             None => specimen(at.as_mut(), gids, advance, (SHEET_WIDTH / args.zoom).into())?,
         };
-        let labels = std::iter::once(ppem.to_string()).chain(std::iter::repeat(String::new()));
-        rows.extend(lines.into_iter().zip(labels).map(|(line, label)| Row { label, cells: vec![line] }));
+        let row_labels = std::iter::once(ppem.to_string()).chain(std::iter::repeat(String::new()));
+        rows.extend(
+            lines.into_iter().zip(row_labels).map(|(line, label)| SheetRow { label, bitmaps: vec![line] }),
+        );
     }
-    output.write(&sheet(&[], &rows, args.zoom)?.png()?)
+    output.write(&png(&sheet(labels, &[], &rows, args.zoom)?)?)
 }

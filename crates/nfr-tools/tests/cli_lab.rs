@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Directory, SANS, nfr};
+use common::{Directory, FONTS, SANS, nfr};
 
 const ROBOTO: [&str; 3] = [
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/Roboto_500Medium.ttf"),
@@ -149,9 +149,8 @@ fn a_family_is_drawn_between_its_weights() {
 fn the_report_shows_every_chart_and_picture_that_it_names() {
     let directory = Directory::new();
     let out = directory.name("out");
-    let fonts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts");
     let args = [
-        "report", "--fonts", fonts, "--text", "li", "--part", "li", "--epochs", "1", "--out", &out, "--quiet",
+        "report", "--fonts", FONTS, "--text", "li", "--part", "li", "--epochs", "1", "--out", &out, "--quiet",
     ];
     let run = lab(&args, &[]).succeeds();
     assert!(run.stdout.starts_with(LABEL) && run.stdout.contains("index.html"));

@@ -1,15 +1,15 @@
-//! Where the field changes its sign: closed loops of points on a fine lattice (marching squares).
+//! The zero level of the field: closed loops of points on a fine lattice (marching squares).
 
 use alloc::vec::Vec;
 
-use crate::model::gridfit::spline;
+use crate::model::grid::spline;
 
 /// Lattice steps in a cell of the field, along each axis.
 pub const LATTICE: usize = 4;
-/// The field counts as at most this (em) on the border of its grid: what is inside ends there.
+/// The field is at most this (em) on the border of its grid, so that all loops are closed.
 pub(super) const BORDER: f32 = -1.0 / 1024.0;
 
-/// Where no point is.
+/// No point.
 const NONE: u32 = u32::MAX;
 
 /// Working memory that tracing reuses.
@@ -32,8 +32,8 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// Finds the points where the lattice's edges cross the outline, and which follows which with the inside on its
-    /// left. `field` has two more coefficients than `cells` on each axis.
+    /// Finds the points where the lattice's edges cross the outline, and links them with the inside on the left. `field`
+    /// has two more coefficients than `cells` on each axis.
     pub(super) fn trace(&mut self, field: &[f32], cells: [usize; 2]) {
         self.contract(field, cells);
         self.sample(cells);
@@ -138,7 +138,7 @@ impl Lattice {
         }
     }
 
-    /// Visits each loop once: its points in order, from the one that was found first.
+    /// Visits each loop once, its points in order from the first one found.
     pub(super) fn loops(&mut self, mut visit: impl FnMut(&[[f32; 2]])) {
         for first in 0..self.points.len() {
             self.chain.clear();
@@ -164,8 +164,8 @@ fn crossing(a: f32, b: f32) -> f32 {
     a / (a - b)
 }
 
-/// Which points follow which in one lattice cell: corners anticlockwise from the lower left, edges likewise from the
-/// lower one. Where opposite corners are inside, the mean decides whether they are connected.
+/// The pairs of consecutive points in one lattice cell. Corners are anticlockwise from the lower left, edges likewise from
+/// the lower one. If opposite corners are inside, the mean decides whether they are connected.
 fn links(inside: [bool; 4], corners: [f32; 4], [bottom, right, top, left]: [u32; 4]) -> [[u32; 2]; 2] {
     let connected = corners[0] + corners[1] + corners[2] + corners[3] > 0.0;
     let one = |from, to| [[from, to], [NONE, NONE]];

@@ -1,22 +1,22 @@
-//! Fewer points on a loop: none of those left out is farther than a tolerance from the new sides, and the area
-//! stays what it was.
+//! Simplification of closed loops (sleeve algorithm of Imai and Iri): no removed point is farther than a tolerance from
+//! the new edges, and the area is preserved.
 
 use alloc::vec::Vec;
 
-use crate::model::root::root_f32;
+use crate::number::sqrt_f32;
 
-/// A point moves if the straight way between its neighbours is more than this share of the way by it.
+/// A point moves if the distance of its neighbours is more than this share of the path through it.
 pub(super) const MIN_STRAIGHT: f32 = 0.25;
 
-/// Sides that are so many times as high as wide, and no wider than the tolerance, become upright; likewise level.
+/// Edges that are so many times as high as wide, and no wider than the tolerance, become vertical; likewise horizontal.
 pub(super) const STEEP: f32 = 4.0;
 
 /// Working memory that simplifying reuses.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Simplifier {
-    /// Numbers of the points that stay.
+    /// Indices of the points that stay.
     kept: Vec<usize>,
-    /// For each side, twice the area that it cuts off, on its right.
+    /// For each edge, twice the area that it cuts off on its right.
     areas: Vec<f32>,
     /// The points that stay, moved.
     points: Vec<[f32; 2]>,
@@ -31,15 +31,15 @@ fn cross(a: [f32; 2], b: [f32; 2]) -> f32 {
 }
 
 fn length(a: [f32; 2]) -> f32 {
-    root_f32(a[0] * a[0] + a[1] * a[1])
+    sqrt_f32(a[0] * a[0] + a[1] * a[1])
 }
 
-/// The directions that a side may take: from the first, anticlockwise, to the second.
+/// The directions that an edge may have: from the first, anticlockwise, to the second.
 #[derive(Debug, Clone, Copy)]
 struct Wedge([f32; 2], [f32; 2]);
 
 impl Simplifier {
-    /// The points that are left of a closed loop: none if it is thinner than the tolerance.
+    /// The simplified loop; empty if the loop is thinner than the tolerance.
     pub(super) fn simplify(&mut self, points: &[[f32; 2]], tolerance: f32) -> &[[f32; 2]] {
         self.points.clear();
         self.keep(points, tolerance);
@@ -51,8 +51,8 @@ impl Simplifier {
         &self.points
     }
 
-    /// Chooses the points that stay: each side goes on as long as there is a direction for it that passes by all of
-    /// its points within the tolerance.
+    /// Chooses the points that stay: each edge is extended as long as some direction passes all of its points within the
+    /// tolerance.
     fn keep(&mut self, points: &[[f32; 2]], tolerance: f32) {
         self.kept.clear();
         self.kept.push(0);
@@ -71,7 +71,7 @@ impl Simplifier {
         }
     }
 
-    /// Measures what the sides cut off.
+    /// Measures the areas that the edges cut off.
     fn measure(&mut self, points: &[[f32; 2]]) {
         self.areas.clear();
         let ends = self.kept[1..].iter().copied().chain([points.len()]);
@@ -81,7 +81,7 @@ impl Simplifier {
         }
     }
 
-    /// Moves the points that stay outwards so far that the sides win the area back.
+    /// Moves the points that stay outwards, so that the edges enclose the area of the loop.
     fn balance(&mut self, points: &[[f32; 2]]) {
         let count = self.kept.len();
         for k in 0..count {
@@ -99,7 +99,7 @@ impl Simplifier {
         }
     }
 
-    /// Makes sides that are nearly upright upright, and level ones level.
+    /// Makes nearly vertical edges vertical, and nearly horizontal ones horizontal.
     fn straighten(&mut self, tolerance: f32) {
         let count = self.points.len();
         for k in 0..count {
@@ -117,7 +117,7 @@ impl Simplifier {
     }
 }
 
-/// What is left of the directions for a side that passes by a point, too. A point within the tolerance allows all.
+/// The directions that also pass a further point within the tolerance. A point nearer than the tolerance allows all.
 fn narrowed(wedge: Option<Wedge>, to: [f32; 2], tolerance: f32) -> Option<Wedge> {
     let far = length(to);
     if far <= tolerance {

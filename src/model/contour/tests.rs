@@ -3,21 +3,22 @@ use proptest::prelude::*;
 use super::lattice::BORDER;
 use super::simplify::{MIN_STRAIGHT, STEEP};
 use super::*;
+use crate::constants::{MAX_PPEM, MAX_TRAINED_PPEM};
+use crate::model::grid::PADDING;
 use crate::model::gridfit::{
-    BOX_SLACK, EMBEDDING_STEPS, FIELD_STEPS, MAX_KNOTS, MAX_PPEM, MIN_KNOT_GAP, PADDING, PATTERN_STEPS,
-    WARP_STEPS,
+    BOX_SLACK, EMBEDDING_STEPS, FIELD_STEPS, MAX_KNOTS, MIN_KNOT_GAP, PATTERN_STEPS, WARP_STEPS,
 };
 use crate::table::codec::{MAX_CELLS, MAX_RANK};
-use crate::table::{MAJOR_VERSION, MAX_TRAINED_PPEM, NETWORK_MINOR_VERSION};
+use crate::table::{MAJOR_VERSION, NETWORK_MINOR_VERSION};
 
 /// A frame without knots or patterns: a grid over a box from (0, 0), and coefficients that are what `value` says at
 /// their places.
-struct Shape {
+struct FieldOfTest {
     grid: [GridAxis; 2],
     field: Vec<f32>,
 }
 
-impl Shape {
+impl FieldOfTest {
     fn new(size: [f32; 2], cells: [usize; 2], value: impl Fn(f32, f32) -> f32) -> Self {
         let grid = [0, 1].map(|k| GridAxis::new(0.0, size[k], cells[k]));
         let centre = |axis: usize, k: usize| grid[axis].origin + (k as f32 - 0.5) / grid[axis].cells_per_em;
@@ -63,7 +64,7 @@ fn area(points: &[[f32; 2]]) -> f64 {
 
 #[test]
 fn lists_are_padded_alike_and_polygons_end_within_them() {
-    let polygons = traced(&Shape::diamond().frame(), 0.001);
+    let polygons = traced(&FieldOfTest::diamond().frame(), 0.001);
     let count = *polygons.ends.last().unwrap() as usize;
     let padded = count.next_multiple_of(LANES);
     assert!(count >= 4);
@@ -74,8 +75,8 @@ fn lists_are_padded_alike_and_polygons_end_within_them() {
 
 #[test]
 fn a_ring_is_an_outer_polygon_and_a_hole() {
-    let ring = Shape::new([0.6, 0.6], [22, 22], |x, y| 0.08 - ((x - 0.3).hypot(y - 0.3) - 0.2).abs());
-    for (_, tolerance) in LEVELS {
+    let ring = FieldOfTest::new([0.6, 0.6], [22, 22], |x, y| 0.08 - ((x - 0.3).hypot(y - 0.3) - 0.2).abs());
+    for (_, tolerance) in LEVELS_OF_DETAIL {
         let areas: Vec<f64> = loops(&traced(&ring.frame(), tolerance)).iter().map(|l| area(l)).collect();
         let disc = |radius: f64| std::f64::consts::PI * radius * radius;
         assert_eq!(areas.len(), 2);
@@ -87,9 +88,9 @@ fn a_ring_is_an_outer_polygon_and_a_hole() {
 
 #[test]
 fn all_levels_of_tolerance_are_traced_as_each_would_be_alone() {
-    let disc = Shape::new([0.6, 0.6], [22, 22], |x, y| 0.28 - (x - 0.3).hypot(y - 0.3));
-    let tolerances = LEVELS.map(|(_, tolerance)| tolerance);
-    let mut levels: [Polygons; LEVELS.len()] = Default::default();
+    let disc = FieldOfTest::new([0.6, 0.6], [22, 22], |x, y| 0.28 - (x - 0.3).hypot(y - 0.3));
+    let tolerances = LEVELS_OF_DETAIL.map(|(_, tolerance)| tolerance);
+    let mut levels: [Polygons; LEVELS_OF_DETAIL.len()] = Default::default();
     let mut tracer = Tracer::default();
     for _ in 0..2 {
         tracer.trace(&disc.frame(), &mut levels, &tolerances);
@@ -102,7 +103,7 @@ fn all_levels_of_tolerance_are_traced_as_each_would_be_alone() {
 
 #[test]
 fn slanted_sides_are_cut_at_knots_and_the_polygon_stays_the_same() {
-    let shape = Shape::diamond();
+    let shape = FieldOfTest::diamond();
     let plain = traced(&shape.frame(), 0.0012);
     let knots: [&[f32]; 2] = [&[0.0, 0.12, 0.41, 0.6], &[0.0, 0.22, 0.47, 0.6]];
     let cut = traced(&Frame { knots, ..shape.frame() }, 0.0012);
@@ -115,7 +116,7 @@ fn slanted_sides_are_cut_at_knots_and_the_polygon_stays_the_same() {
 
 #[test]
 fn upright_and_level_sides_are_not_cut_at_knots() {
-    let square = Shape::new([0.6, 0.6], [22, 22], |x, y| x.min(0.6 - x).min(y).min(0.6 - y));
+    let square = FieldOfTest::new([0.6, 0.6], [22, 22], |x, y| x.min(0.6 - x).min(y).min(0.6 - y));
     let knots: [&[f32]; 2] = [&[0.0, 0.12, 0.41, 0.6], &[0.0, 0.22, 0.47, 0.6]];
     let [plain, cut] =
         [square.frame(), Frame { knots, ..square.frame() }].map(|frame| traced(&frame, 0.0012));
@@ -124,7 +125,7 @@ fn upright_and_level_sides_are_not_cut_at_knots() {
 
 #[test]
 fn wide_sides_are_cut_at_columns_of_nodes() {
-    let bar = Shape::new([0.7, 0.1], [24, 6], |x, y| x.min(0.7 - x).min(y).min(0.1 - y));
+    let bar = FieldOfTest::new([0.7, 0.1], [24, 6], |x, y| x.min(0.7 - x).min(y).min(0.1 - y));
     let patterns = [1.0; NODES];
     let cut = traced(&Frame { patterns: &patterns, ..bar.frame() }, 0.0012);
     for node in (1..DEFORM_NODES - 1).map(|node| bar.grid[0].node(node)) {
@@ -142,7 +143,7 @@ proptest! {
         patterns in prop::collection::vec(-2.0f32..2.0, 2 * NODES),
     ) {
         knots.sort_by(f32::total_cmp);
-        let shape = Shape::diamond();
+        let shape = FieldOfTest::diamond();
         let frame = Frame { knots: [&knots, &knots[knots.len() / 2..]], patterns: &patterns, ..shape.frame() };
         let polygons = traced(&frame, 0.0012);
         let padded = polygons.at[0].len();
@@ -187,13 +188,19 @@ fn the_specification_names_the_constants_that_are_in_use() {
         format!("· {0}, 0, {0}),", DEFORM_NODES - 1),
         format!("a lattice of {LATTICE} steps a cell"),
         format!("F is at most −1/{}.", -1.0 / BORDER),
-        format!("{} em below {} ppem, {} em below {},", LEVELS[0].1, LEVELS[0].0, LEVELS[1].1, LEVELS[1].0),
-        format!("{} em below {}, and {FINEST} em from there on", LEVELS[2].1, LEVELS[2].0),
+        format!(
+            "{} em below {} ppem, {} em below {},",
+            LEVELS_OF_DETAIL[0].1, LEVELS_OF_DETAIL[0].0, LEVELS_OF_DETAIL[1].1, LEVELS_OF_DETAIL[1].0
+        ),
+        format!(
+            "{} em below {}, and {FINEST} em from there on",
+            LEVELS_OF_DETAIL[2].1, LEVELS_OF_DETAIL[2].0
+        ),
         format!("if |c| > {MIN_STRAIGHT} · z,"),
         format!("|b_y − a_y| > |b_x − a_x| · {STEEP},"),
         format!("W · H > (W + H) · (T · {SLANT})"),
         format!("if W > {MIN_WIDTH}."),
-        format!("above 1/{0} and below 1 − 1/{0} count", 1.0 / MIN_CUT),
+        format!("above 1/{0} and below 1 − 1/{0} count", 1.0 / MIN_SPLIT),
         format!("more than {MAX_CELLS} cells, {MAX_KNOTS} knots or rank {MAX_RANK};"),
         format!("| lastPpem | The largest, `firstPpem` to {MAX_TRAINED_PPEM}. |"),
         format!("version {MAJOR_VERSION}.{NETWORK_MINOR_VERSION}\n"),

@@ -2,6 +2,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::model::grid::spline;
 use crate::render::Scratch;
 
 const SCALE: Scale = match Scale::new(1000, 8, 11) {
@@ -84,10 +85,10 @@ fn a_larger_box_than_the_placement_is_drawn_the_same_with_empty_pixels_around() 
 }
 
 #[test]
-fn nothing_is_moved_beyond_the_trained_sizes() {
+fn nothing_is_hinted_at_sizes_that_are_not_trained() {
     let model = GridFit::new(&square(), SCALE).unwrap();
     let far = |ppem: f32, grid: f32| {
-        let hinted: Vec<f32> = model.hinted_knots(1, ppem).collect();
+        let hinted: Vec<f32> = model.hinted_knots(1, &SCALE.at(ppem)).collect();
         (hinted[1] - 0.5 * grid).abs()
     };
     // 500 units at 9 ppem are 4.5 pixels, hinted to 5; at 11 ppem 5.5, hinted to 6.
@@ -120,7 +121,7 @@ proptest! {
         let mut weights = square();
         weights.warp_y.hinted = hinted;
         let model = GridFit::new(&weights, SCALE).unwrap();
-        let knots: Vec<f32> = model.hinted_knots(1, ppem).collect();
+        let knots: Vec<f32> = model.hinted_knots(1, &SCALE.at(ppem)).collect();
         prop_assert!(knots[1] - knots[0] >= MIN_KNOT_GAP * 0.999, "{knots:?}");
     }
 }

@@ -138,7 +138,7 @@ fn a_large_triangle_has_half_the_ink_of_its_box() {
     let size = [2000, 1500];
     let [right, bottom] = size.map(|pixels| pixels as i32 * UNIT);
     let pixels = drawn(&mut Area::default(), size, &[[vec![0, 0, right], vec![0, bottom, bottom]]]);
-    let ink = pixels.iter().map(|level| f64::from(*level) / 255.0).sum::<f64>();
+    let ink = pixels.iter().map(|pixel| f64::from(*pixel) / 255.0).sum::<f64>();
     let half = (size[0] * size[1]) as f64 / 2.0;
     // What the diagonal passes through, at half a level.
     assert!((ink - half).abs() < 3500.0 * 0.5 / 255.0, "{ink} for {half}");
@@ -152,19 +152,19 @@ fn nothing_is_drawn_of_no_points_one_or_two() {
     }
 }
 
-/// What `block_levels` does, for one pixel.
-fn level(sum: i32) -> u8 {
+/// What `block_coverage` does, for one pixel.
+fn coverage(sum: i32) -> u8 {
     let share = (sum >> 5).clamp(0, FULL >> 5);
     ((share - (share >> 8) + 32) >> 6) as u8
 }
 
 #[test]
-fn a_level_is_the_nearest_to_its_share() {
+fn coverage_is_the_nearest_to_the_exact_share() {
     for sum in 0..=FULL {
         let exact = f64::from(sum) / f64::from(FULL) * 255.0;
-        assert!((f64::from(level(sum)) - exact).abs() <= 0.53, "{sum}");
+        assert!((f64::from(coverage(sum)) - exact).abs() <= 0.53, "{sum}");
     }
-    assert_eq!([level(-1), level(i32::MIN), level(FULL + 1), level(i32::MAX)], [0, 0, 255, 255]);
+    assert_eq!([coverage(-1), coverage(i32::MIN), coverage(FULL + 1), coverage(i32::MAX)], [0, 0, 255, 255]);
 }
 
 proptest! {
@@ -221,9 +221,9 @@ proptest! {
 
     #[test]
     fn eight_levels_at_once_are_eight_levels(sums: [i32; LANES], near in vec(-FULL..2 * FULL, LANES)) {
-        prop_assert_eq!(block_levels(i32x8::new(sums)), sums.map(level));
+        prop_assert_eq!(block_coverage(i32x8::new(sums)), sums.map(coverage));
         let near: [i32; LANES] = std::array::from_fn(|k| near[k]);
-        prop_assert_eq!(block_levels(i32x8::new(near)), near.map(level));
+        prop_assert_eq!(block_coverage(i32x8::new(near)), near.map(coverage));
     }
 
     #[test]
@@ -240,17 +240,17 @@ proptest! {
         let mut sums: Vec<i32x8> =
             above.as_chunks::<LANES>().0.iter().map(|chunk| i32x8::new(*chunk)).collect();
         let mut pixels = vec![0; width];
-        levels(&mut blocks, &mut sums, &mut pixels);
+        write_row(&mut blocks, &mut sums, &mut pixels);
         for (k, pixel) in pixels.iter().enumerate() {
             let sum = above[k].wrapping_add(changes[k].0);
             prop_assert_eq!(sums[k / LANES].to_array()[k % LANES], sum);
-            prop_assert_eq!(*pixel, level((sum << (SHIFT + 1)).wrapping_sub(changes[k].1)), "pixel {}", k);
+            prop_assert_eq!(*pixel, coverage((sum << (SHIFT + 1)).wrapping_sub(changes[k].1)), "pixel {}", k);
         }
     }
 
     #[test]
     fn numbers_are_rounded_to_the_nearest_whole_one(v in -4_194_304.0f32..4_194_304.0) {
-        prop_assert_eq!(rounded(v), v.round_ties_even() as i32);
+        prop_assert_eq!(crate::number::round(v), v.round_ties_even() as i32);
     }
 }
 

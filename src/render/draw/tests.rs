@@ -1,9 +1,8 @@
-use proptest::collection::vec;
-use proptest::prelude::*;
-
 use super::*;
-use crate::model::gridfit::{AxisWarp, FIELD_STEPS, GridAxis, Scale, Weights};
-use crate::render::{Limits, union};
+use crate::limits::Limits;
+use crate::model::grid::GridAxis;
+use crate::model::gridfit::{AxisWarp, FIELD_STEPS, Weights};
+use crate::model::sizes::Scale;
 
 const SCALE: Scale = match Scale::new(1000, 8, 11) {
     Some(scale) => scale,
@@ -41,16 +40,24 @@ fn ring(corner: [i16; 2]) -> GridFit {
 type Placed<'a> = (&'a GridFit, [f32; 2]);
 
 fn placement(models: &[Placed<'_>], ppem: f32) -> Placement {
-    let places = models.iter().map(|(model, origin)| model.placement_at(ppem, *origin).unwrap());
-    places.fold(Placement::default(), union)
+    let placements =
+        models.iter().map(|(model, origin)| model.placement_at(&SCALE.at(ppem), *origin).unwrap());
+    placements.fold(Placement::default(), union)
 }
 
 fn drawn<const MOST: usize>(models: &[Placed<'_>], ppem: f32, place: Placement) -> Vec<u8> {
     let mut pixels = vec![99; place.area()];
     let mut canvas = Canvas::new(place, &mut pixels, place.width as usize).unwrap();
     let (mut scratch, mut budget) = (Scratch::default(), Budget::unlimited());
-    draw_in_strips::<MOST>(&models.iter().copied(), ppem, place, &mut scratch, &mut canvas, &mut budget)
-        .unwrap();
+    draw_in_strips::<MOST>(
+        &models.iter().copied(),
+        &SCALE.at(ppem),
+        place,
+        &mut scratch,
+        &mut canvas,
+        &mut budget,
+    )
+    .unwrap();
     pixels
 }
 
@@ -149,7 +156,7 @@ fn a_placement_that_does_not_hold_the_model_is_an_error() {
 }
 
 #[test]
-fn a_drawing_that_is_given_up_leaves_no_ink_behind() {
+fn a_drawing_that_exceeds_its_budget_leaves_nothing_in_the_scratch() {
     let (one, two) = (ring([0, 0]), ring([350, 250]));
     let models = [(&one, [0.0; 2]), (&two, [0.0; 2])];
     for ppem in [30.0, 1500.0] {
@@ -164,7 +171,7 @@ fn a_drawing_that_is_given_up_leaves_no_ink_behind() {
         let mut canvas = Canvas::new(place, &mut pixels, place.width as usize).unwrap();
         let given_up = draw(
             &models.iter().copied(),
-            ppem,
+            &SCALE.at(ppem),
             place,
             &mut scratch,
             &mut canvas,
@@ -175,46 +182,5 @@ fn a_drawing_that_is_given_up_leaves_no_ink_behind() {
         let mut pixels = vec![0; own.area()];
         one.draw(ppem, own, &mut scratch, &mut pixels).unwrap();
         assert!(pixels == drawn::<STRIP>(&[(&one, [0.0; 2])], ppem, own), "{ppem} ppem");
-    }
-}
-
-/// One vertex's place, as `Warp::place` says.
-fn placed(warp: &Warp, offset: i32, at: f32, knots: u8, values: &[(f32, f32)]) -> i32 {
-    let piece = if warp.straight { 0 } else { usize::from(knots).min(MAX_KNOTS) };
-    let [scale, shift] = warp.pieces[piece];
-    let mut sum = at * scale + shift;
-    for (value, strength) in values {
-        sum += value * strength;
-    }
-    sum.max(0.0).min(warp.length).round_ties_even() as i32 + offset
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
-
-    #[test]
-    fn eight_vertices_at_once_are_eight_vertices(
-        blocks in 0usize..5,
-        at in vec(-1.0f32..2.0, 40),
-        knots in vec(any::<u8>(), 40),
-        patterns in vec(-8.0f32..8.0, 3 * 40),
-        strengths in vec((0usize..3, -2000.0f32..2000.0), 0..4),
-        pieces in prop::array::uniform(prop::array::uniform2(-1e6f32..1e6)),
-        straight in any::<bool>(),
-        length in 0.0f32..4_194_304.0,
-        offset in -4_194_304i32..4_194_304,
-    ) {
-        let warp = Warp { pieces, straight, length, ..Warp::default() };
-        let count = blocks * LANES;
-        let mut points = vec![5; 3];
-        warp.place(offset, &at[..count], &knots[..count], &patterns, &strengths, &mut points);
-        let expected: Vec<i32> = (0..count)
-            .map(|k| {
-                let value = |&(pattern, strength): &(usize, f32)| (patterns[pattern * count + k], strength);
-                let values: Vec<(f32, f32)> = strengths.iter().map(value).collect();
-                placed(&warp, offset, at[k], knots[k], &values)
-            })
-            .collect();
-        prop_assert_eq!(points, expected);
     }
 }

@@ -1,33 +1,32 @@
 //! Comparing over glyphs and sizes, on several threads, with a result that does not depend on how many.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::thread;
 
 use super::metrics::Sums;
-use super::source::Source;
+use super::source::BitmapSource;
 use crate::error::Error;
+use crate::parallel;
 
-/// Glyphs that one thread takes at a time: enough that setting a size up costs little, few enough that the
-/// threads end together.
-const GLYPHS_PER_UNIT: usize = 128;
+/// Glyphs that one thread takes at a time: enough that setting a size up costs little, few enough that the threads end
+/// together.
+const GLYPHS_PER_CHUNK: usize = 128;
 
 /// One glyph at one size. Orders by size, then glyph.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-pub struct Cell {
+pub struct GlyphAtSize {
     /// Pixels per em.
     pub ppem: u16,
     /// The glyph.
     pub gid: u16,
 }
 
-/// Sums over some cells, and the cell with the largest difference of a pixel.
+/// Sums over some glyphs and sizes, and where the largest difference of a pixel is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tally {
     /// The sums.
     pub sums: Sums,
     /// Where the largest difference is; of several, the smallest size and glyph. None while all is exact.
-    pub max_at: Option<Cell>,
+    pub max_at: Option<GlyphAtSize>,
 }
 
 impl Tally {
@@ -43,14 +42,14 @@ impl Tally {
 
 /// The models' tally and, beside it, that of the unhinted outlines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Pair {
+pub struct TallyPair {
     /// Models against the hinted truth.
     pub neural: Tally,
     /// Unhinted outlines against the hinted truth.
     pub unhinted: Tally,
 }
 
-impl Pair {
+impl TallyPair {
     /// Adds another pair to this one.
     pub fn merge(&mut self, other: &Self) {
         self.neural.merge(&other.neural);
@@ -62,17 +61,18 @@ impl Pair {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct GlyphTally {
     /// All sizes together.
-    pub all: Pair,
+    pub all: TallyPair,
     /// The size at which the model's mean absolute error is largest (of several, the smallest), and that
     /// size alone.
-    pub worst: Option<(u16, Pair)>,
+    pub worst: Option<(u16, TallyPair)>,
 }
 
 impl GlyphTally {
     fn merge(&mut self, other: &Self) {
         self.all.merge(&other.all);
-        let rank = |worst: &Option<(u16, Pair)>| worst.map(|(ppem, pair)| (pair.neural.sums.mae(), ppem));
-        let replace = match (rank(&self.worst), rank(&other.worst)) {
+        let mae_at =
+            |worst: &Option<(u16, TallyPair)>| worst.map(|(ppem, pair)| (pair.neural.sums.mae(), ppem));
+        let replace = match (mae_at(&self.worst), mae_at(&other.worst)) {
             (Some((mine, my_ppem)), Some((others, other_ppem))) => {
                 others.total_cmp(&mine).then(my_ppem.cmp(&other_ppem)).is_gt()
             }
@@ -89,16 +89,16 @@ impl GlyphTally {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tallies {
     /// By pixels per em.
-    pub by_ppem: BTreeMap<u16, Pair>,
+    pub by_ppem: BTreeMap<u16, TallyPair>,
     /// By glyph.
     pub by_glyph: BTreeMap<u16, GlyphTally>,
 }
 
 impl Tallies {
-    fn add(&mut self, cell: Cell, pair: Pair) {
-        self.by_ppem.entry(cell.ppem).or_default().merge(&pair);
-        let one = GlyphTally { all: pair, worst: Some((cell.ppem, pair)) };
-        self.by_glyph.entry(cell.gid).or_default().merge(&one);
+    fn add(&mut self, at: GlyphAtSize, pair: TallyPair) {
+        self.by_ppem.entry(at.ppem).or_default().merge(&pair);
+        let one = GlyphTally { all: pair, worst: Some((at.ppem, pair)) };
+        self.by_glyph.entry(at.gid).or_default().merge(&one);
     }
 
     fn merge(&mut self, other: &Self) {
@@ -111,15 +111,15 @@ impl Tallies {
     }
 }
 
-/// What is compared: two ways to draw, against the truth.
+/// The sources of bitmaps: two renderings, and the truth that they are compared with.
 #[derive(Clone, Copy)]
 pub struct Sources<'s> {
     /// The hinted bitmaps.
-    pub truth: &'s dyn Source,
+    pub truth: &'s dyn BitmapSource,
     /// The models.
-    pub neural: &'s dyn Source,
+    pub neural: &'s dyn BitmapSource,
     /// The baseline without hints.
-    pub unhinted: &'s dyn Source,
+    pub unhinted: &'s dyn BitmapSource,
 }
 
 /// Compares every glyph at every size.
@@ -129,59 +129,33 @@ pub struct Sources<'s> {
 /// The first that a source reports, in the order of sizes (largest first) and glyphs.
 pub fn compare(sources: Sources<'_>, gids: &[u16], sizes: &[u16], jobs: usize) -> Result<Tallies, Error> {
     // The largest sizes take longest, so they come first.
-    let units: Vec<(u16, &[u16])> = sizes
+    let chunks: Vec<(u16, &[u16])> = sizes
         .iter()
         .rev()
-        .flat_map(|&ppem| gids.chunks(GLYPHS_PER_UNIT).map(move |gids| (ppem, gids)))
+        .flat_map(|&ppem| gids.chunks(GLYPHS_PER_CHUNK).map(move |gids| (ppem, gids)))
         .collect();
-    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let work = || -> Result<Tallies, (usize, Error)> {
-        let mut tallies = Tallies::default();
-        while !failed.load(Ordering::Relaxed) {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(&(ppem, gids)) = units.get(index) else { break };
-            compare_unit(sources, gids, ppem, &mut tallies).map_err(|e| {
-                failed.store(true, Ordering::Relaxed);
-                (index, e)
-            })?;
-        }
-        Ok(tallies)
-    };
-    let results: Vec<_> = thread::scope(|scope| {
-        let threads: Vec<_> = (0..jobs.clamp(1, units.len().max(1))).map(|_| scope.spawn(work)).collect();
-        threads
-            .into_iter()
-            .map(|t| t.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect()
-    });
-    let mut total = Tallies::default();
-    let mut first_error: Option<(usize, Error)> = None;
-    for result in results {
-        match result {
-            Ok(tallies) => total.merge(&tallies),
-            Err(error) if first_error.as_ref().is_none_or(|first| error.0 < first.0) => {
-                first_error = Some(error);
-            }
-            Err(_) => {}
-        }
-    }
-    first_error.map_or(Ok(total), |(_, error)| Err(error))
+    let tallies = parallel::map(&chunks, jobs, |&(ppem, gids)| compare_chunk(sources, gids, ppem))?;
+    Ok(tallies.iter().fold(Tallies::default(), |mut total, tallies| {
+        total.merge(tallies);
+        total
+    }))
 }
 
-fn compare_unit(sources: Sources<'_>, gids: &[u16], ppem: u16, tallies: &mut Tallies) -> Result<(), Error> {
+fn compare_chunk(sources: Sources<'_>, gids: &[u16], ppem: u16) -> Result<Tallies, Error> {
     let (mut truth, mut neural) = (sources.truth.at(ppem)?, sources.neural.at(ppem)?);
     let mut unhinted = sources.unhinted.at(ppem)?;
+    let mut tallies = Tallies::default();
     for &gid in gids {
-        let cell = Cell { ppem, gid };
+        let at = GlyphAtSize { ppem, gid };
         let truth = truth.bitmap(gid)?;
         let tally = |bitmap| {
             let sums = Sums::of(&truth, &bitmap);
-            Tally { sums, max_at: (sums.max() > 0).then_some(cell) }
+            Tally { sums, max_at: (sums.max() > 0).then_some(at) }
         };
-        tallies
-            .add(cell, Pair { neural: tally(neural.bitmap(gid)?), unhinted: tally(unhinted.bitmap(gid)?) });
+        let pair = TallyPair { neural: tally(neural.bitmap(gid)?), unhinted: tally(unhinted.bitmap(gid)?) };
+        tallies.add(at, pair);
     }
-    Ok(())
+    Ok(tallies)
 }
 
 #[cfg(test)]
@@ -189,7 +163,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::compare::source::{Hinted, SourceAt, Unhinted};
+    use crate::compare::source::{Hinted, SizedSource, Unhinted};
     use crate::teacher::Teacher;
     use nfr::Bitmap;
     use nfr::Target;
@@ -206,15 +180,15 @@ mod tests {
     /// Fails at every size up to one, with the size in the message.
     struct Failing(u16);
 
-    impl Source for Failing {
-        fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
+    impl BitmapSource for Failing {
+        fn at(&self, ppem: u16) -> Result<Box<dyn SizedSource + '_>, Error> {
             if ppem <= self.0 { Err(Error::Io(ppem.to_string())) } else { Ok(Box::new(Blank)) }
         }
     }
 
     struct Blank;
 
-    impl SourceAt for Blank {
+    impl SizedSource for Blank {
         fn bitmap(&mut self, _gid: u16) -> Result<Bitmap, Error> {
             Ok(Bitmap::default())
         }
@@ -240,13 +214,13 @@ mod tests {
         let gids: Vec<u16> = LETTERS.collect();
         let sizes: Vec<u16> = (8..=64).collect();
         let tallies = compare(sources, &gids, &sizes, 2).unwrap();
-        let mut all = Pair::default();
+        let mut all = TallyPair::default();
         tallies.by_ppem.values().for_each(|pair| all.merge(pair));
         assert_eq!((all.neural.sums.figures().exact, all.neural.max_at), (1.0, None));
         // Unhinted outlines of Latin fonts measure 0.028 to 0.030 over 8 to 64 ppem.
         let mae = all.unhinted.sums.figures().mae;
         assert!((0.02..0.04).contains(&mae), "{mae}");
-        let by_glyph = tallies.by_glyph.values().fold(Pair::default(), |mut sum, glyph| {
+        let by_glyph = tallies.by_glyph.values().fold(TallyPair::default(), |mut sum, glyph| {
             sum.merge(&glyph.all);
             sum
         });
@@ -265,7 +239,7 @@ mod tests {
         assert_eq!(at(&sizes).worst, Some((worst, at(&[worst]).all)));
         let max = |ppem: u16| at(&[ppem]).all.neural.sums.max();
         let max_at = sizes.into_iter().max_by_key(|ppem| (max(*ppem), std::cmp::Reverse(*ppem))).unwrap();
-        assert_eq!(at(&sizes).all.neural.max_at, Some(Cell { ppem: max_at, gid: 68 }));
+        assert_eq!(at(&sizes).all.neural.max_at, Some(GlyphAtSize { ppem: max_at, gid: 68 }));
     }
 
     #[test]

@@ -4,16 +4,16 @@ use std::collections::HashMap;
 
 use read_fonts::FontRef;
 
-use super::diff::{Sources, Tallies, compare};
-use super::report::{Report, Subject};
+use super::diff::{Sources, compare};
+use super::report::{Report, ReportHeader};
 use super::source::{Hinted, Neural, Unhinted};
 use crate::assemble::outline_hash;
 use crate::error::Error;
 use crate::open::{open, owned};
-use crate::plain::PlainOutlines;
 use crate::ppem::PpemList;
 use crate::select::glyph_names;
 use crate::teacher::Teacher;
+use crate::teacher::UnhintedOutlines;
 use nfr::Font;
 
 /// An original and the neural font made from it, checked to belong together.
@@ -77,7 +77,7 @@ impl<'a> FontPair<'a> {
         if self.font.outlines_dropped() {
             return Ok(());
         }
-        let outlines = PlainOutlines::new(&self.neural_file)?;
+        let outlines = UnhintedOutlines::new(&self.neural_file)?;
         for &gid in gids {
             let plain = self.teacher.unhinted_em(gid)?;
             if !matches!(outlines.em(gid), Ok(outline) if outline.points == plain.points) {
@@ -94,7 +94,7 @@ impl<'a> FontPair<'a> {
         self.font.table_len() as f64 / self.font.modelled_glyphs().count().max(1) as f64
     }
 
-    /// Compares glyphs at sizes and sums the result up. `names` are the two files' paths, original first.
+    /// Compares glyphs at sizes and adds the errors up. `names` are the two files' paths, original first.
     ///
     /// # Errors
     ///
@@ -106,7 +106,7 @@ impl<'a> FontPair<'a> {
         ppem: &PpemList,
         jobs: usize,
     ) -> Result<Report, Error> {
-        let subject = Subject {
+        let header = ReportHeader {
             original: names[0].to_owned(),
             neural: names[1].to_owned(),
             target: self.font.target().name().to_owned(),
@@ -116,10 +116,18 @@ impl<'a> FontPair<'a> {
             bytes_per_glyph: self.bytes_per_glyph(),
         };
         let tallies = self.with_sources(gids, |sources| compare(sources, gids, ppem.sizes(), jobs))?;
-        self.summed_up(subject, &tallies)
+        let mut characters = HashMap::new();
+        for (code, gid) in owned(&self.original)?.charmap().unicodes() {
+            if let Some(character) = char::from_u32(code) {
+                characters.entry(gid.to_u32()).or_insert(character);
+            }
+        }
+        let names = glyph_names(&self.original)?;
+        let label = |gid: u16| (names.get(&gid).cloned(), characters.get(&gid.into()).copied());
+        Ok(Report::new(header, &tallies, label))
     }
 
-    /// Gives the three ways to draw these glyphs to `f`.
+    /// Calls `f` with the three sources of bitmaps of these glyphs: hinted, neural and unhinted.
     ///
     /// # Errors
     ///
@@ -133,21 +141,9 @@ impl<'a> FontPair<'a> {
         self.check_outlines(gids)?;
         f(Sources { truth: &Hinted(&self.teacher), neural: &neural, unhinted: &Unhinted(&self.teacher) })
     }
-
-    fn summed_up(&self, subject: Subject, tallies: &Tallies) -> Result<Report, Error> {
-        let mut characters = HashMap::new();
-        for (code, gid) in owned(&self.original)?.charmap().unicodes() {
-            if let Some(character) = char::from_u32(code) {
-                characters.entry(gid.to_u32()).or_insert(character);
-            }
-        }
-        let names = glyph_names(&self.original)?;
-        let called = |gid: u16| (names.get(&gid).cloned(), characters.get(&gid.into()).copied());
-        Ok(Report::new(subject, tallies, called))
-    }
 }
 
-/// Says which of the two fonts an error is about.
+/// Adds to an error which of the two fonts it is about.
 fn about(font: &str, error: Error) -> Error {
     match error {
         Error::Malformed(what) => Error::Malformed(format!("{font}: {what}")),

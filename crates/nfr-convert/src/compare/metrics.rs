@@ -1,4 +1,4 @@
-//! How far two bitmaps are apart.
+//! The differences between two bitmaps.
 //!
 //! Everything is counted over the union of the two bitmaps' boxes, in integers, so that sums over many
 //! bitmaps come out the same in any order. A pixel outside a bitmap's box has coverage 0.
@@ -57,10 +57,10 @@ impl Sums {
         let mut uncovered = (columns.end - columns.start) as u64 * (rows.end - rows.start) as u64;
         for y in rows {
             let before = self.pixels;
-            self.add_rows(Row::of(truth, y), Row::of(other, y));
+            self.add_rows(PixelRow::of(truth, y), PixelRow::of(other, y));
             uncovered -= self.pixels - before;
         }
-        // What neither box covers is 0 in both.
+        // Pixels that neither box covers are 0 in both bitmaps.
         self.pixels += uncovered;
         self.exact += uncovered;
     }
@@ -101,7 +101,7 @@ impl Sums {
         part as f64 / self.pixels.max(1) as f64
     }
 
-    fn add_rows(&mut self, a: Row<'_>, b: Row<'_>) {
+    fn add_rows(&mut self, a: PixelRow<'_>, b: PixelRow<'_>) {
         let start = a.start.max(b.start);
         let shared = (a.end().min(b.end()) - start).max(0) as usize;
         let (a_before, a_rest) = a.split(start);
@@ -111,11 +111,11 @@ impl Sums {
             self.add_pixel(a.abs_diff(b));
         }
         for row in [a_before, a_after, b_before, b_after] {
-            self.add_against_nothing(row);
+            self.add_uncovered(row);
         }
     }
 
-    fn add_against_nothing(&mut self, row: &[u8]) {
+    fn add_uncovered(&mut self, row: &[u8]) {
         for &value in row {
             self.add_pixel(value);
         }
@@ -134,13 +134,13 @@ impl Sums {
 
 /// The pixels of one row, and the column of the first.
 #[derive(Clone, Copy)]
-struct Row<'a> {
+struct PixelRow<'a> {
     start: i64,
     pixels: &'a [u8],
 }
 
-impl<'a> Row<'a> {
-    /// Row `y` of a bitmap, counted downwards from the baseline; empty outside its box.
+impl<'a> PixelRow<'a> {
+    /// PixelRow `y` of a bitmap, counted downwards from the baseline; empty outside its box.
     fn of(bitmap: &'a Bitmap, y: i64) -> Self {
         let placement = &bitmap.placement;
         let width = placement.width as usize;
@@ -161,7 +161,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Columns from the pen and rows downwards from the baseline that either box covers. An empty box covers
+/// Columns from the origin and rows downwards from the baseline that either box covers. An empty box covers
 /// nothing, wherever it lies.
 pub fn union_box(a: &Placement, b: &Placement) -> (Range<i64>, Range<i64>) {
     let sides = |p: &Placement| {
@@ -177,7 +177,7 @@ pub fn union_box(a: &Placement, b: &Placement) -> (Range<i64>, Range<i64>) {
     }
 }
 
-/// The coverage at a column from the pen and a row counted downwards from the baseline.
+/// The coverage at a column from the origin and a row counted downwards from the baseline.
 pub fn coverage_at(bitmap: &Bitmap, x: i64, y: i64) -> u8 {
     let p = &bitmap.placement;
     let (column, row) = (x - i64::from(p.left), y + i64::from(p.top));

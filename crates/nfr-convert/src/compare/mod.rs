@@ -6,6 +6,6 @@ pub mod html;
 pub mod metrics;
 pub mod picture;
 pub mod report;
-pub mod sample;
+pub mod sample_text;
 pub mod source;
 pub mod threshold;

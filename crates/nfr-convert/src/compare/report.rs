@@ -4,23 +4,23 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::diff::{Cell, Pair, Tallies, Tally};
+use super::diff::{GlyphAtSize, Tallies, Tally, TallyPair};
 use super::metrics::Figures;
 
-/// Sizes that are reported together, in pixels per em: small text, text, and headings.
+/// SizeBand that are reported together, in pixels per em: small text, text, and headings.
 pub const BANDS: [(u16, u16); 3] = [(8, 15), (16, 31), (32, 64)];
 
 /// Glyphs that the printed report lists.
 const WORST_PRINTED: usize = 10;
 
-/// What was compared.
+/// The two fonts, and the sizes and glyphs compared.
 #[derive(Debug, Clone, Serialize)]
-pub struct Subject {
+pub struct ReportHeader {
     /// The hinted font's path.
     pub original: String,
     /// The neural font's path.
     pub neural: String,
-    /// What the truth is hinted for.
+    /// The target of the hinted bitmaps.
     pub target: String,
     /// The sizes, as on the command line.
     pub ppem: String,
@@ -34,15 +34,15 @@ pub struct Subject {
 
 /// Metrics, and where the largest error is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Located {
+pub struct LocatedErrors {
     /// The metrics.
     #[serde(flatten)]
     pub figures: Figures,
     /// The glyph and size with the largest error of a pixel; none if all is exact.
-    pub max_at: Option<Cell>,
+    pub max_at: Option<GlyphAtSize>,
 }
 
-impl From<&Tally> for Located {
+impl From<&Tally> for LocatedErrors {
     fn from(tally: &Tally) -> Self {
         Self { figures: tally.sums.figures(), max_at: tally.max_at }
     }
@@ -50,34 +50,34 @@ impl From<&Tally> for Located {
 
 /// The models' metrics beside those of the unhinted outlines.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Compared {
+pub struct ComparedErrors {
     /// Models against the hinted truth.
-    pub neural: Located,
+    pub neural: LocatedErrors,
     /// Unhinted outlines against the hinted truth.
-    pub unhinted: Located,
+    pub unhinted: LocatedErrors,
 }
 
-impl From<&Pair> for Compared {
-    fn from(pair: &Pair) -> Self {
+impl From<&TallyPair> for ComparedErrors {
+    fn from(pair: &TallyPair) -> Self {
         Self { neural: (&pair.neural).into(), unhinted: (&pair.unhinted).into() }
     }
 }
 
 /// The metrics of some sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Sizes {
+pub struct SizeBand {
     /// The smallest size, in pixels per em.
     pub first_ppem: u16,
     /// The largest.
     pub last_ppem: u16,
     /// The metrics.
     #[serde(flatten)]
-    pub compared: Compared,
+    pub compared: ComparedErrors,
 }
 
 /// The metrics of a glyph.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct OfGlyph {
+pub struct GlyphErrors {
     /// The glyph.
     pub gid: u16,
     /// Its name in 'post'.
@@ -88,34 +88,34 @@ pub struct OfGlyph {
     pub worst_ppem: u16,
     /// The metrics over all sizes.
     #[serde(flatten)]
-    pub compared: Compared,
+    pub compared: ComparedErrors,
 }
 
 /// A comparison.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
-    /// What was compared.
+    /// The two fonts, and the sizes and glyphs compared.
     #[serde(flatten)]
-    pub subject: Subject,
+    pub header: ReportHeader,
     /// Everything together.
-    pub totals: Compared,
+    pub totals: ComparedErrors,
     /// [`BANDS`], where they have a size; with the sizes that were compared.
-    pub bands: Vec<Sizes>,
+    pub bands: Vec<SizeBand>,
     /// One size each, ascending.
-    pub by_ppem: Vec<Sizes>,
+    pub by_ppem: Vec<SizeBand>,
     /// Largest mean absolute error first.
-    pub by_glyph: Vec<OfGlyph>,
+    pub by_glyph: Vec<GlyphErrors>,
 }
 
 impl Report {
-    /// Adds the tallies up. `label` gives a glyph's name and character.
+    /// Adds the tallies up. `label` returns a glyph's name and character.
     pub fn new(
-        subject: Subject,
+        header: ReportHeader,
         tallies: &Tallies,
         label: impl Fn(u16) -> (Option<String>, Option<char>),
     ) -> Self {
         let sum = |sizes: std::ops::RangeInclusive<u16>| {
-            tallies.by_ppem.range(sizes).fold(Pair::default(), |mut sum, (_, pair)| {
+            tallies.by_ppem.range(sizes).fold(TallyPair::default(), |mut sum, (_, pair)| {
                 sum.merge(pair);
                 sum
             })
@@ -124,7 +124,7 @@ impl Report {
             let mut sizes = tallies.by_ppem.range(first..=last).map(|(ppem, _)| *ppem);
             let first_ppem = sizes.next()?;
             let last_ppem = sizes.next_back().unwrap_or(first_ppem);
-            Some(Sizes { first_ppem, last_ppem, compared: (&sum(first..=last)).into() })
+            Some(SizeBand { first_ppem, last_ppem, compared: (&sum(first..=last)).into() })
         };
         let mut by_glyph: Vec<_> = tallies
             .by_glyph
@@ -132,13 +132,13 @@ impl Report {
             .map(|(&gid, tally)| {
                 let (name, character) = label(gid);
                 let worst_ppem = tally.worst.map_or(0, |(ppem, _)| ppem);
-                OfGlyph { gid, name, character, worst_ppem, compared: (&tally.all).into() }
+                GlyphErrors { gid, name, character, worst_ppem, compared: (&tally.all).into() }
             })
             .collect();
-        let mae = |glyph: &OfGlyph| glyph.compared.neural.figures.mae;
+        let mae = |glyph: &GlyphErrors| glyph.compared.neural.figures.mae;
         by_glyph.sort_by(|a, b| mae(b).total_cmp(&mae(a)).then(a.gid.cmp(&b.gid)));
         Self {
-            subject,
+            header,
             totals: (&sum(0..=u16::MAX)).into(),
             bands: BANDS.into_iter().filter_map(band).collect(),
             by_ppem: tallies.by_ppem.keys().filter_map(|&ppem| band((ppem, ppem))).collect(),
@@ -150,17 +150,17 @@ impl Report {
 /// The report for people.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let subject = &self.subject;
-        writeln!(f, "{} against {}", subject.neural, subject.original)?;
-        writeln!(f, "{}, {} ppem, target {}", glyphs(subject.glyphs), subject.ppem, subject.target)?;
-        writeln!(f, "{} bytes of models, {:.1} per glyph", subject.table_bytes, subject.bytes_per_glyph)?;
+        let header = &self.header;
+        writeln!(f, "{} against {}", header.neural, header.original)?;
+        writeln!(f, "{}, {} ppem, target {}", glyph_count_text(header.glyphs), header.ppem, header.target)?;
+        writeln!(f, "{} bytes of models, {:.1} per glyph", header.table_bytes, header.bytes_per_glyph)?;
         writeln!(f, "\n{:<20}{:>9}{:>9}{:>9}{:>10}{:>10}", "", "mae", "rmse", "max", "bad16", "exact")?;
         write_pair(f, "all", &self.totals)?;
         for band in &self.bands {
             write_pair(f, &format!("{}-{}", band.first_ppem, band.last_ppem), &band.compared)?;
         }
-        if let Some(cell) = self.totals.neural.max_at {
-            writeln!(f, "\nlargest error: glyph {} at {} ppem", cell.gid, cell.ppem)?;
+        if let Some(at) = self.totals.neural.max_at {
+            writeln!(f, "\nlargest error: glyph {} at {} ppem", at.gid, at.ppem)?;
         }
         writeln!(
             f,
@@ -183,7 +183,7 @@ impl fmt::Display for Report {
     }
 }
 
-impl OfGlyph {
+impl GlyphErrors {
     /// The glyph's number, name and character.
     pub fn title(&self) -> String {
         let mut title = self.gid.to_string();
@@ -199,17 +199,17 @@ impl OfGlyph {
     }
 }
 
-/// So many glyphs, in words.
-pub fn glyphs(count: usize) -> String {
+/// "1 glyph", "2 glyphs".
+pub fn glyph_count_text(count: usize) -> String {
     format!("{count} glyph{}", if count == 1 { "" } else { "s" })
 }
 
-fn write_pair(f: &mut fmt::Formatter<'_>, sizes: &str, pair: &Compared) -> fmt::Result {
-    for (who, located) in [("neural", &pair.neural), ("unhinted", &pair.unhinted)] {
+fn write_pair(f: &mut fmt::Formatter<'_>, sizes: &str, pair: &ComparedErrors) -> fmt::Result {
+    for (name, located) in [("neural", &pair.neural), ("unhinted", &pair.unhinted)] {
         let m = &located.figures;
         writeln!(
             f,
-            "{sizes:<10}{who:<10}{:>9.5}{:>9.5}{:>9.5}{:>8.2} %{:>8.2} %",
+            "{sizes:<10}{name:<10}{:>9.5}{:>9.5}{:>9.5}{:>8.2} %{:>8.2} %",
             m.mae,
             m.rmse,
             m.max,
@@ -227,11 +227,11 @@ mod tests {
     use crate::compare::metrics::Sums;
     use nfr::{Bitmap, Placement};
 
-    fn off_by(difference: u8) -> Pair {
+    fn off_by(difference: u8) -> TallyPair {
         let placement = Placement { left: 0, top: 1, width: 1, height: 1 };
         let sums =
             Sums::of(&Bitmap { placement, pixels: vec![0] }, &Bitmap { placement, pixels: vec![difference] });
-        Pair { neural: Tally { sums, max_at: None }, unhinted: Tally::default() }
+        TallyPair { neural: Tally { sums, max_at: None }, unhinted: Tally::default() }
     }
 
     fn report() -> Report {
@@ -243,7 +243,7 @@ mod tests {
             let all = off_by(difference);
             tallies.by_glyph.insert(gid, GlyphTally { all, worst: Some((12, all)) });
         }
-        let subject = Subject {
+        let header = ReportHeader {
             original: "a.ttf".into(),
             neural: "b.ttf".into(),
             target: "smooth".into(),
@@ -252,7 +252,7 @@ mod tests {
             table_bytes: 30,
             bytes_per_glyph: 10.0,
         };
-        Report::new(subject, &tallies, |gid| (Some(format!("name{gid}")), char::from_u32(gid.into())))
+        Report::new(header, &tallies, |gid| (Some(format!("name{gid}")), char::from_u32(gid.into())))
     }
 
     #[test]

@@ -7,18 +7,18 @@ use crate::teacher::{Teacher, TeacherAt};
 use nfr::internals::{Decoder, Glyph, Scratch};
 use nfr::{Bitmap, Font, Limits};
 
-/// Something that draws glyphs, from several threads.
-pub trait Source: Sync {
+/// A source of bitmaps at any size, for several threads.
+pub trait BitmapSource: Sync {
     /// Prepares one size, in pixels per em.
     ///
     /// # Errors
     ///
     /// As the source's own.
-    fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error>;
+    fn at(&self, ppem: u16) -> Result<Box<dyn SizedSource + '_>, Error>;
 }
 
 /// A source at one size.
-pub trait SourceAt {
+pub trait SizedSource {
     /// Draws a glyph.
     ///
     /// # Errors
@@ -30,23 +30,23 @@ pub trait SourceAt {
 /// A font's hinted outlines, filled: the truth.
 pub struct Hinted<'t>(pub &'t Teacher);
 
-impl Source for Hinted<'_> {
-    fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
+impl BitmapSource for Hinted<'_> {
+    fn at(&self, ppem: u16) -> Result<Box<dyn SizedSource + '_>, Error> {
         Ok(Box::new(self.0.at(ppem)?))
     }
 }
 
-impl SourceAt for TeacherAt {
+impl SizedSource for TeacherAt {
     fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
         self.hinted(gid)?.rasterize()
     }
 }
 
-/// A font's outlines as they are, filled: what rendering without hints gives.
+/// A font's outlines as they are, filled without hints.
 pub struct Unhinted<'t>(pub &'t Teacher);
 
-impl Source for Unhinted<'_> {
-    fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
+impl BitmapSource for Unhinted<'_> {
+    fn at(&self, ppem: u16) -> Result<Box<dyn SizedSource + '_>, Error> {
         Ok(Box::new(UnhintedAt { teacher: self.0, ppem: ppem.into() }))
     }
 }
@@ -56,7 +56,7 @@ struct UnhintedAt<'t> {
     ppem: f32,
 }
 
-impl SourceAt for UnhintedAt<'_> {
+impl SizedSource for UnhintedAt<'_> {
     fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
         self.teacher.unhinted(gid, self.ppem)?.rasterize()
     }
@@ -72,7 +72,7 @@ impl Neural {
     ///
     /// `MissingGlyph` for a glyph without a model, `Malformed` for a damaged one.
     pub fn new(font: &Font, gids: &[u16]) -> Result<Self, Error> {
-        // A tool may take its time, for one of the paper's networks, say.
+        // A tool need not answer at once: one of the paper's networks may take its time.
         let mut limits = Limits::default();
         (limits.decoded_bytes, limits.work) = (1 << 30, u64::MAX);
         let mut decoder = Decoder::new(font, limits);
@@ -81,8 +81,8 @@ impl Neural {
     }
 }
 
-impl Source for Neural {
-    fn at(&self, ppem: u16) -> Result<Box<dyn SourceAt + '_>, Error> {
+impl BitmapSource for Neural {
+    fn at(&self, ppem: u16) -> Result<Box<dyn SizedSource + '_>, Error> {
         Ok(Box::new(NeuralAt { glyphs: &self.0, ppem: ppem.into(), scratch: Scratch::default() }))
     }
 }
@@ -93,7 +93,7 @@ struct NeuralAt<'n> {
     scratch: Scratch,
 }
 
-impl SourceAt for NeuralAt<'_> {
+impl SizedSource for NeuralAt<'_> {
     fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
         let glyph = self.glyphs.get(&gid).ok_or(Error::MissingGlyph(gid))?;
         Ok(glyph.render_with(self.ppem, &mut self.scratch)?)

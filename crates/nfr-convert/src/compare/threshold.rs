@@ -50,7 +50,7 @@ fn value(report: &Report, metric: &str) -> f64 {
         "max" => figures.max,
         "bad16" => figures.bad16,
         "exact" => figures.exact,
-        _ => report.subject.bytes_per_glyph,
+        _ => report.header.bytes_per_glyph,
     }
 }
 
@@ -112,8 +112,8 @@ mod tests {
     #[test]
     fn conditions_are_joined_by_commas_and_bars() {
         let all: FailOn = " mae>0.006 || bad16 >= .02,exact<0.5||bytes_per_glyph <= 600".parse().unwrap();
-        let shown: Vec<_> = all.0.iter().map(ToString::to_string).collect();
-        assert_eq!(shown, ["mae > 0.006", "bad16 >= 0.02", "exact < 0.5", "bytes_per_glyph <= 600"]);
+        let texts: Vec<_> = all.0.iter().map(ToString::to_string).collect();
+        assert_eq!(texts, ["mae > 0.006", "bad16 >= 0.02", "exact < 0.5", "bytes_per_glyph <= 600"]);
     }
 
     #[test]

@@ -1,34 +1,34 @@
-//! What a chunk of glyphs is trained on, as tensors that stay the same through all steps.
+//! The training samples of a chunk of glyphs as tensors, which stay the same through all steps.
 //!
-//! The sizes are dealt into `GROUPS` groups, and one step sees one group. Rows and columns of samples are
-//! listed once for each glyph and size; the samples themselves refer to them by index.
+//! The sizes are split into `GROUPS` groups, one of which is the batch of a step. Rows and columns of subpixel samples are
+//! listed once for each glyph and size; the samples refer to them by index.
 
 use burn::tensor::{Device, Int, Tensor, TensorData};
 
 use super::coverage::{SLOPE_REACH, samples_per_pixel};
 use crate::error::Error;
-use crate::start::Draft;
-use crate::teach::{HintedGlyph, Lesson};
+use crate::fit::Parameters;
+use crate::training_samples::{GlyphSamples, TrainingSample};
 use nfr::Placement;
 use nfr::internals::model::gridfit::{DEFORM_NODES, GridAxis, GridFit};
 
-/// Groups that the sizes are dealt into, each one a spread over the whole range.
+/// Groups of sizes. Each is spread over the whole range.
 pub(super) const GROUPS: usize = 8;
 
-/// A size for lines that only fill up a tensor.
+/// The size of padding lines.
 const PADDING_PPEM: f32 = 1.0;
-/// Pixels around the model's box that are trained too.
+/// Pixels around the model's box that are part of the loss.
 const BORDER: u32 = 1;
 
 /// Lines (rows or columns) of samples along one axis, all glyphs after each other, padded to the same count.
-pub(super) struct Lines {
+pub(super) struct SampleLines {
     /// Sample positions in pixels `[lines]`.
     pub(super) at: Tensor<1>,
     /// Half the reach of the slope in pixels `[lines]`.
     pub(super) reach: Tensor<1>,
     /// Pixels per em `[lines]`.
     pub(super) ppem: Tensor<1>,
-    /// Plain knot positions in em and the distance to the next, zero after the last: `[lines, knots]`.
+    /// Unhinted knot positions in em and the distance to the next, zero after the last: `[lines, knots]`.
     pub(super) knots: Tensor<2>,
     pub(super) gaps: Tensor<2>,
     /// Which hinted position belongs to each knot of each line `[lines · knots]`.
@@ -47,10 +47,10 @@ pub(super) struct Lines {
     pub(super) knot_count: usize,
 }
 
-/// Samples near edges and the pixels they make up.
-pub(super) struct Samples {
+/// Subpixel samples near edges and the pixels that consist of them.
+pub(super) struct SubpixelSamples {
     pub(super) row: Tensor<1, Int>,
-    /// Where each sample's column begins in the contracted field and in the contracted deformation.
+    /// The index of each sample's column in the field and in the deformation that are evaluated along x.
     pub(super) column: Tensor<1>,
     pub(super) nodes: Tensor<1>,
     pub(super) origin: Tensor<1>,
@@ -62,7 +62,7 @@ pub(super) struct Samples {
     pub(super) samples_per_em: Tensor<1>,
     /// −1 where the teacher's pixel is empty, 1 where it is full, 0 between.
     pub(super) side: Tensor<1>,
-    /// 1 where a saturated sample of the wrong side is a mistake for certain.
+    /// 1 where every sample of a pixel has to be on the pixel's side, 0 where the pixel is partly covered.
     pub(super) certain: Tensor<1>,
     /// Runs of samples `(first, pixels, samples in a pixel)`.
     pub(super) runs: Vec<(usize, usize, usize)>,
@@ -71,13 +71,13 @@ pub(super) struct Samples {
 }
 
 /// One group of sizes of a chunk.
-pub(super) struct Group {
-    pub(super) columns: Lines,
-    pub(super) rows: Lines,
-    pub(super) samples: Samples,
+pub(super) struct SizeGroup {
+    pub(super) columns: SampleLines,
+    pub(super) rows: SampleLines,
+    pub(super) samples: SubpixelSamples,
 }
 
-/// Sizes shared by everything in a chunk, padding included.
+/// Dimensions of a chunk's tensors, padding included.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extent {
     pub(super) glyphs: usize,
@@ -90,18 +90,18 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    pub(super) fn of(drafts: &[Draft], sizes: usize) -> Self {
-        let most = |f: &dyn Fn(&Draft) -> usize| drafts.iter().map(f).max().unwrap_or(0);
+    pub(super) fn of(parameters: &[Parameters], sizes: usize) -> Self {
+        let most = |f: &dyn Fn(&Parameters) -> usize| parameters.iter().map(f).max().unwrap_or(0);
         Self {
-            glyphs: drafts.len(),
+            glyphs: parameters.len(),
             sizes,
-            coefficients: [0, 1].map(|k| most(&|d| d.cells[k] + 2)),
-            // A warp of one knot is padded to two: its line needs an end.
-            knots: [0, 1].map(|k| match most(&|d| d.knots[k].len()) {
+            coefficients: [0, 1].map(|k| most(&|p| p.cells[k] + 2)),
+            // `unwarp` needs two knots, so that one knot is padded to two.
+            knots: [0, 1].map(|k| match most(&|p| p.knots[k].len()) {
                 1 => 2,
                 knots => knots,
             }),
-            rank: most(&|d| d.rank),
+            rank: most(&|p| p.rank),
         }
     }
 }
@@ -150,22 +150,22 @@ struct Pixel {
     target: f32,
 }
 
-impl Group {
-    /// The tensors of group `group` of a chunk's lessons.
+impl SizeGroup {
+    /// The tensors of group `group` of a chunk's glyphs.
     pub(super) fn new(
-        lessons: &[Lesson],
-        drafts: &[Draft],
+        glyphs: &[GlyphSamples],
+        parameters: &[Parameters],
         models: &[GridFit],
         units: f32,
         extent: Extent,
         group: usize,
         device: &Device,
     ) -> Result<Self, Error> {
-        let mut lines = [vec![Vec::new(); lessons.len()], vec![Vec::new(); lessons.len()]];
+        let mut lines = [vec![Vec::new(); glyphs.len()], vec![Vec::new(); glyphs.len()]];
         let mut pixels: Vec<Pixel> = Vec::new();
-        for (glyph, (lesson, model)) in lessons.iter().zip(models).enumerate() {
-            for (size, hinted) in lesson.sizes.iter().enumerate().skip(group).step_by(GROUPS) {
-                let ppem = f32::from(hinted.ppem);
+        for (glyph, (samples, model)) in glyphs.iter().zip(models).enumerate() {
+            for (size, sample) in samples.sizes.iter().enumerate().skip(group).step_by(GROUPS) {
+                let ppem = f32::from(sample.ppem);
                 let place = widened(model.placement(ppem)?);
                 let n = samples_per_pixel(ppem);
                 let (first_column, first_row) = (lines[0][glyph].len(), lines[1][glyph].len());
@@ -175,20 +175,20 @@ impl Group {
                 for j in 0..place.height as usize * n {
                     lines[1][glyph].push((size, ppem, place.top as f32 - (j as f32 + 0.5) / n as f32));
                 }
-                for (i, j, target) in near_edges(hinted, place) {
+                for (i, j, target) in near_edges(sample, place) {
                     let (column, row) = (first_column + i * n, first_row + j * n);
                     pixels.push(Pixel { glyph, ppem, column, row, target });
                 }
             }
         }
-        let grids: Vec<[GridAxis; 2]> = drafts
+        let grids: Vec<[GridAxis; 2]> = parameters
             .iter()
-            .map(|d| {
+            .map(|p| {
                 [0, 1].map(|k| {
                     GridAxis::new(
-                        f32::from(d.bounds[k]) / units,
-                        f32::from(d.bounds[k + 2]) / units,
-                        d.cells[k].max(1),
+                        f32::from(p.bounds[k]) / units,
+                        f32::from(p.bounds[k + 2]) / units,
+                        p.cells[k].max(1),
                     )
                 })
             })
@@ -196,11 +196,11 @@ impl Group {
         let tensors = |axis: usize| {
             let count = lines[axis].iter().map(Vec::len).max().unwrap_or(0);
             let mut lists = LineLists::default();
-            for (glyph, draft) in drafts.iter().enumerate() {
+            for (glyph, parameters) in parameters.iter().enumerate() {
                 for k in 0..count {
                     let padding = (0, PADDING_PPEM, 0.0);
                     let line = lines[axis][glyph].get(k).copied().unwrap_or(padding);
-                    lists.push(axis, glyph, draft, units, extent, line, grids[glyph][axis]);
+                    lists.push(axis, glyph, parameters, units, extent, line, grids[glyph][axis]);
                 }
             }
             lists.tensors(count, extent.knots[axis], device)
@@ -217,7 +217,7 @@ impl LineLists {
         &mut self,
         axis: usize,
         glyph: usize,
-        draft: &Draft,
+        parameters: &Parameters,
         units: f32,
         extent: Extent,
         (size, ppem, at): (usize, f32, f32),
@@ -229,7 +229,7 @@ impl LineLists {
         self.ppem.push(ppem);
         self.grid.push(grid);
         self.size.push((glyph * extent.sizes + size) as i32);
-        let own = &draft.knots[axis];
+        let own = &parameters.knots[axis];
         let last = own.len().saturating_sub(1);
         let em = |k: usize| own.get(k).map_or(0.0, |v| f32::from(*v) / units);
         let base = (glyph * extent.sizes + size) * extent.knots[axis];
@@ -241,7 +241,7 @@ impl LineLists {
         self.last.push((base + last) as i32);
     }
 
-    fn tensors(self, count: usize, knot_count: usize, device: &Device) -> Lines {
+    fn tensors(self, count: usize, knot_count: usize, device: &Device) -> SampleLines {
         let lines = self.at.len();
         let grid = |f: &dyn Fn(&GridAxis) -> f32| floats(self.grid.iter().map(f).collect(), device);
         let (origin, cells_per_em, cells) =
@@ -250,7 +250,7 @@ impl LineLists {
             values.resize(lines * knot_count.max(1), 0.0);
             floats(values, device).reshape([lines, knot_count.max(1)])
         };
-        Lines {
+        SampleLines {
             at: floats(self.at, device),
             reach: floats(self.reach, device),
             ppem: floats(self.ppem, device),
@@ -268,7 +268,7 @@ impl LineLists {
     }
 }
 
-/// A box with a border, where the model has to learn to leave pixels empty.
+/// A box with a border, where the model learns empty pixels.
 fn widened(place: Placement) -> Placement {
     if place.area() == 0 {
         return place;
@@ -282,9 +282,9 @@ fn widened(place: Placement) -> Placement {
 }
 
 /// Pixels of a box whose neighbourhood in the teacher's bitmap is not uniform: column, row, coverage.
-fn near_edges(hinted: &HintedGlyph, place: Placement) -> Vec<(usize, usize, f32)> {
-    let truth = &hinted.bitmap;
-    let level = |x: i32, y: i32| {
+fn near_edges(sample: &TrainingSample, place: Placement) -> Vec<(usize, usize, f32)> {
+    let truth = &sample.bitmap;
+    let coverage = |x: i32, y: i32| {
         let (i, j) = (x - truth.placement.left, truth.placement.top - 1 - y);
         let inside =
             i >= 0 && j >= 0 && i < truth.placement.width as i32 && j < truth.placement.height as i32;
@@ -294,9 +294,9 @@ fn near_edges(hinted: &HintedGlyph, place: Placement) -> Vec<(usize, usize, f32)
     for j in 0..place.height as i32 {
         for i in 0..place.width as i32 {
             let (x, y) = (place.left + i, place.top - 1 - j);
-            let centre = level(x, y);
+            let centre = coverage(x, y);
             let uniform = (centre == 0 || centre == 255)
-                && (-1..=1).all(|dy| (-1..=1).all(|dx| level(x + dx, y + dy) == centre));
+                && (-1..=1).all(|dy| (-1..=1).all(|dx| coverage(x + dx, y + dy) == centre));
             if !uniform {
                 pixels.push((i as usize, j as usize, f32::from(centre) / 255.0));
             }
@@ -305,17 +305,17 @@ fn near_edges(hinted: &HintedGlyph, place: Placement) -> Vec<(usize, usize, f32)
     pixels
 }
 
-/// A coverage this close to empty or full is taken as such by the penalty on saturated samples.
+/// Coverage this close to 0 or 1 is empty or full for the penalty on saturated samples.
 const NEARLY: f32 = 0.02;
 
 fn sample_tensors(
     mut pixels: Vec<Pixel>,
-    columns: &Lines,
-    rows: &Lines,
+    columns: &SampleLines,
+    rows: &SampleLines,
     grids: &[[GridAxis; 2]],
     extent: Extent,
     device: &Device,
-) -> Samples {
+) -> SubpixelSamples {
     pixels.sort_by_key(|p| samples_per_pixel(p.ppem));
     let mut lists = SampleLists::default();
     let mut runs: Vec<(usize, usize, usize)> = Vec::new();
@@ -345,7 +345,7 @@ fn sample_tensors(
     let grid =
         |f: &dyn Fn(&GridAxis) -> f32| floats(lists.glyph.iter().map(|g| f(&grids[*g][1])).collect(), device);
     let nodes_per_em = |g: &GridAxis| g.cells_per_em / g.cells as f32 * (DEFORM_NODES - 1) as f32;
-    Samples {
+    SubpixelSamples {
         origin: grid(&|g| g.origin),
         cells_per_em: grid(&|g| g.cells_per_em),
         cells: grid(&|g| g.cells as f32),

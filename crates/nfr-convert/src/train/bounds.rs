@@ -1,14 +1,14 @@
-//! What the training must not do: a model's bitmap stays within the box of the teacher's.
+//! Constraints of the training: a model's bitmap stays within the box of the teacher's.
 
 use burn::tensor::{Device, Tensor};
 
 use super::batch::Extent;
-use super::field::hinted_tensors;
-use crate::start::Draft;
-use crate::teach::Lesson;
+use super::tensors::hinted_tensors;
+use crate::fit::Parameters;
+use crate::training_samples::GlyphSamples;
 use nfr::{Bitmap, Placement};
 
-/// Rows and columns at a bitmap's border whose pixels are all at most this, of 255, are not worth drawing.
+/// Rows and columns at a bitmap's border whose pixels are all at most this, of 255, are left out.
 const FAINT: u8 = 2;
 
 /// The box of a bitmap without faint rows and columns at its border.
@@ -31,8 +31,8 @@ fn inked(bitmap: &Bitmap) -> Placement {
     }
 }
 
-/// Keeps hinted positions between their bounds.
-pub(super) fn within(hinted: [Tensor<1>; 2], low: [Tensor<1>; 2], high: [Tensor<1>; 2]) -> [Tensor<1>; 2] {
+/// Clamps hinted positions to their bounds (projected gradient descent).
+pub(super) fn clamped(hinted: [Tensor<1>; 2], low: [Tensor<1>; 2], high: [Tensor<1>; 2]) -> [Tensor<1>; 2] {
     let [x, y] = hinted;
     let ([low_x, low_y], [high_x, high_y]) = (low, high);
     let clamp = |at: Tensor<1>, low: Tensor<1>, high: Tensor<1>| {
@@ -42,21 +42,21 @@ pub(super) fn within(hinted: [Tensor<1>; 2], low: [Tensor<1>; 2], high: [Tensor<
     [clamp(x, low_x, high_x), clamp(y, low_y, high_y)]
 }
 
-/// Bounds of the hinted positions: the knots, the outermost of which make the bitmap's box, stay within the
-/// teacher's. Beyond the first `hinted` sizes they stay where they are.
+/// Lower and upper bounds of the hinted positions. The outermost knots determine the bitmap's box, which stays within the
+/// teacher's. Knots of sizes after the first `hinted` ones are fixed.
 pub(super) fn box_bounds(
-    lessons: &[Lesson],
-    drafts: &[Draft],
+    glyphs: &[GlyphSamples],
+    parameters: &[Parameters],
     hinted: usize,
     extent: Extent,
     device: &Device,
 ) -> [[Tensor<1>; 2]; 2] {
     let bound = |upper: bool| {
-        let each: Vec<[Vec<f32>; 2]> = lessons
+        let each: Vec<[Vec<f32>; 2]> = glyphs
             .iter()
-            .zip(drafts)
-            .map(|(lesson, draft)| {
-                let inked: Vec<Placement> = lesson.sizes.iter().map(|s| inked(&s.bitmap)).collect();
+            .zip(parameters)
+            .map(|(samples, parameters)| {
+                let inked: Vec<Placement> = samples.sizes.iter().map(|s| inked(&s.bitmap)).collect();
                 [0, 1].map(|axis| {
                     let at = |size: usize| {
                         let place = inked[size];
@@ -70,14 +70,14 @@ pub(super) fn box_bounds(
                             (_, _, true) => place.top as f32,
                         }
                     };
-                    let knots = draft.knots[axis].len();
+                    let knots = parameters.knots[axis].len();
                     let within = (0..hinted).flat_map(|size| std::iter::repeat_n(at(size), knots));
-                    within.chain(draft.hinted[axis][hinted * knots..].iter().copied()).collect()
+                    within.chain(parameters.hinted[axis][hinted * knots..].iter().copied()).collect()
                 })
             })
             .collect();
         let each: Vec<_> = each.iter().collect();
-        hinted_tensors(&each, drafts, extent, 0.0, device)
+        hinted_tensors(&each, parameters, extent, 0.0, device)
     };
     [bound(false), bound(true)]
 }

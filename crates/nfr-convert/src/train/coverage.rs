@@ -1,5 +1,5 @@
-//! How training takes coverage: from a few samples in each pixel, each with a straight edge through it. It has a
-//! gradient everywhere near edges, which exact areas have not.
+//! The coverage that training computes: a few subpixel samples in each pixel, each cut by a straight edge. Unlike exact
+//! areas it has a gradient everywhere near edges.
 
 /// Half the distance (in samples) over which the warp's slope is taken.
 pub(super) const SLOPE_REACH: f32 = 0.25;
@@ -8,7 +8,7 @@ pub(super) const MIN_GRADIENT: f32 = 0.03;
 /// The smaller component of the gradient is at least this share of the larger one.
 pub(super) const MIN_SKEW: f32 = 0.02;
 
-/// How many samples a pixel has along each axis: small sizes are supersampled.
+/// The number of samples in a pixel along each axis: small sizes are supersampled.
 pub(super) fn samples_per_pixel(ppem: f32) -> usize {
     match ppem {
         s if s < 11.0 => 6,

@@ -1,166 +1,15 @@
-//! The grid-fit field in burn: the arithmetic of `model::gridfit`, over a whole group at once.
+//! The differentiable renderer of the training, in burn: the coverage of a whole group's subpixel samples, from the field,
+//! the warp and the deformation. The renderer of `nfr` traces the field's zero level and fills it instead.
 
-use burn::tensor::{Device, Tensor, TensorData};
+use burn::tensor::Tensor;
 
-use super::batch::{Extent, Group, Lines, Samples};
-use super::beyond::Learnt;
+use super::batch::{Extent, SampleLines, SizeGroup, SubpixelSamples};
 use super::coverage::{MIN_GRADIENT, MIN_SKEW};
-use crate::start::Draft;
-use nfr::internals::model::gridfit::{
-    DEFORM_NODES, EMBEDDING_STEPS, FIELD_STEPS, MIN_KNOT_GAP, PATTERN_STEPS, WARP_STEPS,
-};
+use super::tensors::{ParameterTensors, tensor};
+use nfr::internals::model::gridfit::{DEFORM_NODES, MIN_KNOT_GAP};
 
-/// The trained weights of a chunk of glyphs.
-#[derive(Clone)]
-pub(super) struct Parameters {
-    /// Spline coefficients in em `[glyphs, along x, along y]`.
-    pub(super) field: Tensor<3>,
-    /// Hinted knot positions in pixels for x and y `[glyphs · sizes · knots]`.
-    pub(super) hinted: [Tensor<1>; 2],
-    /// Deformation patterns `[glyphs, nodes along x, rank · nodes along y]`.
-    pub(super) patterns: Tensor<3>,
-    /// The size embedding in pixels `[glyphs · sizes, rank]`.
-    pub(super) embedding: Tensor<2>,
-}
-
-fn tensor<const D: usize>(values: Vec<f32>, shape: [usize; D], device: &Device) -> Tensor<D> {
-    Tensor::from_data(TensorData::new(values, shape), device)
-}
-
-fn values<const D: usize>(tensor: &Tensor<D>) -> Vec<f32> {
-    tensor.clone().into_data().iter::<f32>().collect()
-}
-
-/// Values for each knot at each size, laid out as `Parameters::hinted`; `fill` where a glyph has fewer knots.
-pub(super) fn hinted_tensors(
-    each: &[&[Vec<f32>; 2]],
-    drafts: &[Draft],
-    extent: Extent,
-    fill: f32,
-    device: &Device,
-) -> [Tensor<1>; 2] {
-    [0, 1].map(|axis| {
-        let knots = extent.knots[axis];
-        let mut all = vec![fill; (extent.glyphs * extent.sizes * knots).max(1)];
-        for (g, (values, draft)) in each.iter().zip(drafts).enumerate() {
-            let own = draft.knots[axis].len();
-            for (k, v) in values[axis].iter().enumerate() {
-                all[(g * extent.sizes + k / own) * knots + k % own] = *v;
-            }
-        }
-        let count = all.len();
-        tensor(all, [count], device)
-    })
-}
-
-impl Parameters {
-    pub(super) fn from_drafts(drafts: &[Draft], extent: Extent, device: &Device) -> Self {
-        let [nx, ny] = extent.coefficients;
-        let nodes = DEFORM_NODES;
-        let mut field = vec![0.0; extent.glyphs * nx * ny];
-        let mut patterns = vec![0.0; extent.glyphs * nodes * extent.rank * nodes];
-        let mut embedding = vec![0.0; extent.glyphs * extent.sizes * extent.rank];
-        for (g, draft) in drafts.iter().enumerate() {
-            let stride = draft.cells[0] + 2;
-            for (k, v) in draft.field.iter().enumerate() {
-                field[(g * nx + k % stride) * ny + k / stride] = *v;
-            }
-            for (k, v) in draft.patterns.iter().enumerate() {
-                let (r, y, x) = (k / (nodes * nodes), k / nodes % nodes, k % nodes);
-                patterns[((g * nodes + x) * extent.rank + r) * nodes + y] = *v;
-            }
-            for (k, v) in draft.embedding.iter().enumerate() {
-                embedding[(g * extent.sizes + k / draft.rank) * extent.rank + k % draft.rank] = *v;
-            }
-        }
-        let hinted = drafts.iter().map(|d| &d.hinted).collect::<Vec<_>>();
-        let hinted = hinted_tensors(&hinted, drafts, extent, 0.0, device);
-        Self {
-            field: tensor(field, [extent.glyphs, nx, ny], device),
-            hinted,
-            patterns: tensor(patterns, [extent.glyphs, nodes, extent.rank * nodes], device),
-            embedding: tensor(embedding, [extent.glyphs * extent.sizes, extent.rank], device),
-        }
-    }
-
-    /// Writes the weights back.
-    pub(super) fn store(&self, drafts: &mut [Draft], extent: Extent) {
-        let [nx, ny] = extent.coefficients;
-        let nodes = DEFORM_NODES;
-        let field = values(&self.field);
-        let hinted = [values(&self.hinted[0]), values(&self.hinted[1])];
-        let (patterns, embedding) = (values(&self.patterns), values(&self.embedding));
-        for (g, draft) in drafts.iter_mut().enumerate() {
-            let stride = draft.cells[0] + 2;
-            for (k, v) in draft.field.iter_mut().enumerate() {
-                *v = field[(g * nx + k % stride) * ny + k / stride];
-            }
-            for (axis, hinted) in hinted.iter().enumerate() {
-                let own = draft.knots[axis].len();
-                for (k, v) in draft.hinted[axis].iter_mut().enumerate() {
-                    *v = hinted[(g * extent.sizes + k / own) * extent.knots[axis] + k % own];
-                }
-            }
-            for (k, v) in draft.patterns.iter_mut().enumerate() {
-                let (r, y, x) = (k / (nodes * nodes), k / nodes % nodes, k % nodes);
-                *v = patterns[((g * nodes + x) * extent.rank + r) * nodes + y];
-            }
-            let rank = draft.rank;
-            for (k, v) in draft.embedding.iter_mut().enumerate() {
-                *v = embedding[(g * extent.sizes + k / rank) * extent.rank + k % rank];
-            }
-        }
-    }
-
-    /// The weights as they would be stored, with the gradient of the unrounded ones (straight-through). What is not
-    /// learnt is not stored either.
-    pub(super) fn rounded(&self, learnt: &Learnt) -> Self {
-        let hinted = |axis: usize| {
-            let plain = &self.hinted[axis];
-            let moved = (straight_through(plain, WARP_STEPS) - plain.clone()).detach();
-            plain.clone() + moved * learnt.hinted[axis].clone()
-        };
-        Self {
-            field: straight_through(&self.field, FIELD_STEPS),
-            hinted: [0, 1].map(hinted),
-            patterns: straight_through(&self.patterns, PATTERN_STEPS),
-            embedding: straight_through(&self.embedding, EMBEDDING_STEPS),
-        }
-    }
-
-    /// The weights with knots that ascend, as the renderer takes them: one that hinting puts below the one before
-    /// it counts as just above that one.
-    pub(super) fn ordered(self, extent: Extent) -> Self {
-        let [x, y] = self.hinted;
-        let hinted = [ascending(x, extent.knots[0]), ascending(y, extent.knots[1])];
-        Self { hinted, ..self }
-    }
-}
-
-/// The gradient passes to where the knot would be: one that is held up can still find its way.
-fn ascending(hinted: Tensor<1>, knots: usize) -> Tensor<1> {
-    if knots < 2 {
-        return hinted;
-    }
-    let [count] = hinted.dims();
-    let rows = hinted.clone().detach().reshape([count / knots, knots]);
-    let mut columns = vec![rows.clone().narrow(1, 0, 1)];
-    for k in 1..knots {
-        let least = columns[k - 1].clone().add_scalar(MIN_KNOT_GAP);
-        columns.push(rows.clone().narrow(1, k, 1).max_pair(least));
-    }
-    let moved = Tensor::cat(columns, 1).reshape([count]) - hinted.clone().detach();
-    hinted + moved
-}
-
-fn straight_through<const D: usize>(weights: &Tensor<D>, steps: f32) -> Tensor<D> {
-    let plain = weights.clone().detach();
-    let error = plain.clone().mul_scalar(steps).round().div_scalar(steps) - plain;
-    weights.clone() + error
-}
-
-/// Plain coordinates (em) of a set of lines and the slope of the inverse warp (em per em).
-fn unwarp(lines: &Lines, hinted: &Tensor<1>) -> (Tensor<1>, Tensor<1>) {
+/// The unhinted coordinates (em) of lines, and the slope of the inverse warp there (em per em).
+fn unwarp(lines: &SampleLines, hinted: &Tensor<1>) -> (Tensor<1>, Tensor<1>) {
     if lines.knot_count == 0 {
         return (lines.at.clone() / lines.ppem.clone(), lines.ppem.clone().ones_like());
     }
@@ -176,8 +25,8 @@ fn unwarp(lines: &Lines, hinted: &Tensor<1>) -> (Tensor<1>, Tensor<1>) {
     let point = |at: Tensor<1>| {
         let within = (at.clone().reshape([count, 1]) - at_knots.clone()) / gap.clone();
         let inside = (within.clamp(0.0, 1.0) * lines.gaps.clone()).sum_dim(1).reshape([count]);
-        let beyond = (at.clone() - first.clone()).clamp_max(0.0) + (at - last.clone()).clamp_min(0.0);
-        start.clone() + inside + beyond / lines.ppem.clone()
+        let outside = (at.clone() - first.clone()).clamp_max(0.0) + (at - last.clone()).clamp_min(0.0);
+        start.clone() + inside + outside / lines.ppem.clone()
     };
     let low = point(lines.at.clone() - lines.reach.clone());
     let high = point(lines.at.clone() + lines.reach.clone());
@@ -185,7 +34,7 @@ fn unwarp(lines: &Lines, hinted: &Tensor<1>) -> (Tensor<1>, Tensor<1>) {
     ((low + high).mul_scalar(0.5), slope)
 }
 
-/// The columns of a group, contracted: what is left to evaluate along y.
+/// The field and the deformation, evaluated along x at each column: B-splines and nodes along y remain.
 struct Columns {
     /// Spline coefficients along y `[glyphs · columns · coefficients]`.
     value: Tensor<1>,
@@ -195,14 +44,14 @@ struct Columns {
     deform: Tensor<1>,
 }
 
-/// The part of a column that only depends on where it lies.
+/// The basis functions of each column, which depend on its position only.
 pub(super) struct ColumnBasis {
     value: Tensor<3>,
     slope: Tensor<3>,
     hats: Tensor<3>,
 }
 
-pub(super) fn column_basis(columns: &Lines, hinted: &Tensor<1>, extent: Extent) -> ColumnBasis {
+pub(super) fn column_basis(columns: &SampleLines, hinted: &Tensor<1>, extent: Extent) -> ColumnBasis {
     let device = columns.at.device();
     let (x, slope) = unwarp(columns, hinted);
     let lines = extent.glyphs * columns.count;
@@ -233,7 +82,12 @@ pub(super) fn column_basis(columns: &Lines, hinted: &Tensor<1>, extent: Extent) 
     }
 }
 
-fn contract(basis: &ColumnBasis, columns: &Lines, weights: &Parameters, extent: Extent) -> Columns {
+fn contract(
+    basis: &ColumnBasis,
+    columns: &SampleLines,
+    weights: &ParameterTensors,
+    extent: Extent,
+) -> Columns {
     let lines = extent.glyphs * columns.count;
     let flat = lines * extent.coefficients[1];
     let value = basis.value.clone().matmul(weights.field.clone()).reshape([flat]);
@@ -250,7 +104,7 @@ struct Drawn {
     coverage: Tensor<1>,
 }
 
-fn draw(columns: &Columns, rows: &Lines, hinted: &Tensor<1>, samples: &Samples) -> Drawn {
+fn draw(columns: &Columns, rows: &SampleLines, hinted: &Tensor<1>, samples: &SubpixelSamples) -> Drawn {
     let (y, slope) = unwarp(rows, hinted);
     let (y, slope) = (y.select(0, samples.row.clone()), slope.select(0, samples.row.clone()));
     let last = (DEFORM_NODES - 1) as f32;
@@ -296,7 +150,7 @@ fn half_plane(field: Tensor<1>, gx: Tensor<1>, gy: Tensor<1>) -> Drawn {
     let m = field * sign.clone();
     let distance = m.clone() / a.clone();
     let ratio = b / a;
-    // Everything over a: an edge at `distance` whose smaller gradient component is `ratio` of the larger.
+    // In units of a: an edge at `distance` whose smaller gradient component is `ratio` of the larger.
     let rest = (ratio.clone().add_scalar(1.0).mul_scalar(0.5) - distance.clone()).clamp_min(0.0);
     let corner = rest.square() / ratio.clone().mul_scalar(2.0);
     let straight = (-distance.clone()).add_scalar(0.5);
@@ -315,11 +169,12 @@ const SATURATION: f32 = 0.7;
 /// The penalty grows no further than this distance (samples).
 const FAR: f32 = 8.0;
 
-/// The loss of one group: every pixel's error, and what keeps lost samples findable.
+/// The loss of one group: the error of every pixel, and a penalty that gives saturated samples on the wrong side a
+/// gradient.
 pub(super) fn loss(
-    group: &Group,
+    group: &SizeGroup,
     basis: Option<&ColumnBasis>,
-    weights: &Parameters,
+    weights: &ParameterTensors,
     extent: Extent,
 ) -> Tensor<1> {
     let own;

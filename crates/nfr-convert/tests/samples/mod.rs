@@ -1,4 +1,4 @@
-//! What several test files use.
+//! Fonts and conversions for the tests.
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
 use nfr::Bitmap;
@@ -40,11 +40,11 @@ impl Progress for Silent {
 }
 
 /// Converts the glyphs of a text with `steps` steps of training, for sizes 8–64. Without any step the models
-/// are the first guesses: rough, but whole. Nothing is polished.
+/// are the initial fits. Nothing is refined.
 pub(crate) fn converted(font: &[u8], text: &str, steps: usize) -> Conversion {
     let mut options = Options { gids: gids(font, text), ..Options::default() };
     options.schedule.steps = steps;
-    options.polish.rounds = 0;
+    options.refinement.rounds = 0;
     convert(font, &options, &Silent).unwrap()
 }
 

@@ -5,14 +5,14 @@ use std::ops::Range;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, ValueFormatter};
 use plotters::prelude::Ranged;
 
-/// Nothing smaller is told from zero: half a level of one pixel of a large box has a larger mean squared error.
+/// Smaller values are drawn as zero: half a level of one pixel of a large box has a larger mean squared error.
 const SMALLEST: f64 = 1e-9;
-/// White space beyond the values.
+/// White space on either side of the values.
 const ROOM: f64 = 1.25;
 /// Up to so many decades there are numbers at 2 and 5 too.
 const DECADES_WITH_STEPS: f64 = 2.5;
 
-/// A range of positive numbers. What lies outside is drawn at its ends, zero at the lower one.
+/// A range of positive numbers. Values outside are drawn at its ends, zero at the lower one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LogAxis {
     low: f64,
@@ -32,15 +32,15 @@ impl LogAxis {
         Self { low: low / missing, high: high * missing }
     }
 
-    /// A value's place, 0..1.
-    fn place(&self, value: f64) -> f64 {
+    /// A value's position on the axis, 0..1.
+    fn position(&self, value: f64) -> f64 {
         let span = (self.high / self.low).log10();
         ((value.max(self.low) / self.low).log10() / span).min(1.0)
     }
 
-    /// The number at a place, 0..1.
-    pub(super) fn at(&self, place: f64) -> f64 {
-        self.low * (self.high / self.low).powf(place)
+    /// The number at a position, 0..1.
+    pub(super) fn at(&self, position: f64) -> f64 {
+        self.low * (self.high / self.low).powf(position)
     }
 
     /// The lower end.
@@ -50,7 +50,7 @@ impl LogAxis {
 
     /// Which of `count` equal parts a value lies in.
     pub(super) fn part(&self, value: f64, count: usize) -> usize {
-        ((self.place(value) * count as f64) as usize).min(count.saturating_sub(1))
+        ((self.position(value) * count as f64) as usize).min(count.saturating_sub(1))
     }
 }
 
@@ -59,7 +59,7 @@ impl Ranged for LogAxis {
     type ValueType = f64;
 
     fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        from + (f64::from(to - from) * self.place(*value)).round() as i32
+        from + (f64::from(to - from) * self.position(*value)).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
@@ -99,8 +99,8 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let shown = [0.0, 1e-4, 0.00035, 0.001, 0.0234, 2.0, 12345.0].map(number);
-        assert_eq!(shown, ["0", "1e-4", "3.5e-4", "0.001", "0.023", "2", "1.2e4"]);
+        let texts = [0.0, 1e-4, 0.00035, 0.001, 0.0234, 2.0, 12345.0].map(number);
+        assert_eq!(texts, ["0", "1e-4", "3.5e-4", "0.001", "0.023", "2", "1.2e4"]);
     }
 
     #[test]

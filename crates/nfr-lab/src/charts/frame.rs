@@ -1,4 +1,4 @@
-//! What all charts share: headings, a legend above the drawing, colours, and what goes wrong.
+//! The parts that all charts share: headings, a legend above the drawing, colours, and errors.
 
 use std::fmt::Display;
 
@@ -6,8 +6,25 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::Headings;
 use nfr_convert::error::Error;
+
+/// The texts above a chart.
+#[derive(Debug, Clone, Copy)]
+pub struct Headings<'h> {
+    /// The chart's contents, in one short line.
+    pub title: &'h str,
+    /// On what scale, and whatever else a reader must know; broken into lines as needed.
+    pub subtitle: &'h str,
+}
+
+/// The errors of one model or variant, in any order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorSeries {
+    /// Its name, in the legend.
+    pub name: String,
+    /// Its errors.
+    pub values: Vec<f64>,
+}
 
 /// A part of an SVG drawing.
 pub(super) type Area<'s> = DrawingArea<SVGBackend<'s>, Shift>;
@@ -31,7 +48,7 @@ pub(super) const GRID: RGBColor = RGBColor(0xe2, 0xe2, 0xe2);
 const WIDTH: u32 = 860;
 /// The edge around everything.
 const MARGIN: i32 = 14;
-/// Sizes of letters. The renderer makes text smaller than it is asked to, by 1.24.
+/// Sizes of letters. plotters divides sizes by 1.24.
 const TITLE: f64 = 21.0;
 const TEXT: f64 = 16.0;
 const LINE: i32 = 18;
@@ -64,7 +81,7 @@ pub(super) fn chart(
     draw: impl FnOnce(&Area<'_>) -> Result<(), Error>,
 ) -> Result<String, Error> {
     let lines = wrapped(headings.subtitle, (f64::from(WIDTH as i32 - 2 * MARGIN) / LETTER) as usize);
-    let signs = placed(legend);
+    let signs = sign_positions(legend);
     let rows = signs.last().map_or(0, |(_, row)| row + 1);
     let head = MARGIN + 28 + LINE * (lines.len() as i32 + rows) + 8;
     let mut svg = String::new();
@@ -91,8 +108,8 @@ pub(super) fn chart(
     Ok(svg)
 }
 
-/// Where the legend's signs stand: x, and the row.
-fn placed(legend: &[&str]) -> Vec<(i32, i32)> {
+/// The positions of the legend's signs: x, and the row.
+fn sign_positions(legend: &[&str]) -> Vec<(i32, i32)> {
     let (mut x, mut row) = (MARGIN, 0);
     let place = |name: &&str| {
         let width = SIGN + (name.chars().count() as f64 * LETTER) as i32 + 18;
@@ -134,7 +151,7 @@ mod tests {
     #[test]
     fn a_legend_that_is_too_long_goes_on_below() {
         let name = "m".repeat(50);
-        let rows: Vec<i32> = placed(&[&name, &name, &name]).into_iter().map(|(_, row)| row).collect();
+        let rows: Vec<i32> = sign_positions(&[&name, &name, &name]).into_iter().map(|(_, row)| row).collect();
         assert_eq!(rows, [0, 0, 1]);
     }
 }

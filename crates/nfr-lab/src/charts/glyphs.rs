@@ -3,9 +3,8 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::Headings;
 use super::axis::LogAxis;
-use super::frame::{FAINT, GRID, INK, chart, colour, failed, text};
+use super::frame::{FAINT, GRID, Headings, INK, chart, colour, failed, text};
 use nfr_convert::error::Error;
 
 const HEIGHT: u32 = 340;

@@ -3,8 +3,7 @@
 use plotters::prelude::*;
 
 use super::axis::LogAxis;
-use super::frame::{FAINT, GRID, INK, chart, colour, failed, text};
-use super::{Headings, Series};
+use super::frame::{ErrorSeries, FAINT, GRID, Headings, INK, chart, colour, failed, text};
 use nfr_convert::error::Error;
 
 /// As in the paper.
@@ -18,7 +17,7 @@ const FILLED: f64 = 0.86;
 /// # Errors
 ///
 /// `LimitExceeded` if the chart cannot be drawn.
-pub fn error_histogram(headings: &Headings<'_>, models: &[Series]) -> Result<String, Error> {
+pub fn error_histogram(headings: &Headings<'_>, models: &[ErrorSeries]) -> Result<String, Error> {
     let axis = LogAxis::around(models.iter().flat_map(|model| model.values.iter().copied()));
     let counts: Vec<[usize; BINS]> = models.iter().map(|model| counts(&axis, &model.values)).collect();
     let most = counts.iter().flatten().copied().max().unwrap_or(0).max(1);

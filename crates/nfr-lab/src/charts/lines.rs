@@ -3,10 +3,9 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::Headings;
 use super::axis::LogAxis;
-use super::frame::{FAINT, GRID, INK, chart, colour, failed, text};
-use crate::error::Summary;
+use super::frame::{FAINT, GRID, Headings, INK, chart, colour, failed, text};
+use crate::statistics::Summary;
 use nfr_convert::error::Error;
 
 const HEIGHT: u32 = 360;

@@ -1,8 +1,8 @@
-//! What all charts keep to. With `NFR_CHARTS` set to a directory, they are left there to be looked at.
+//! Properties of all charts. With `NFR_CHARTS` set to a directory, they are left there to be looked at.
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::error::Summary;
+use crate::statistics::Summary;
 
 const HEADINGS: Headings<'_> = Headings {
     title: "Errors of <models> & others",
@@ -33,7 +33,7 @@ const MODELS: [&str; 4] =
 
 fn samples() -> Vec<(&'static str, String)> {
     let name = |model: usize| MODELS[model].to_string();
-    let series: Vec<_> = (0..4).map(|m| Series { name: name(m), values: errors(m, 1144) }).collect();
+    let series: Vec<_> = (0..4).map(|m| ErrorSeries { name: name(m), values: errors(m, 1144) }).collect();
     let at = |m, side| Summary::of(errors(m, 200).iter().map(|v| v * 20.0 / side as f64)).unwrap();
     let sizes: Vec<_> = (0..3)
         .map(|m| SizeSeries { name: name(m), sizes: (20..=63).map(|s| (s, at(m, s))).collect() })
@@ -53,7 +53,7 @@ fn samples() -> Vec<(&'static str, String)> {
     let variants: Vec<_> = variants
         .iter()
         .enumerate()
-        .map(|(m, n)| Series { name: n.to_string(), values: errors(m, 300) })
+        .map(|(m, n)| ErrorSeries { name: n.to_string(), values: errors(m, 300) })
         .collect();
     let methods: Vec<_> = (0..4)
         .map(|m| Line { name: name(m), points: (20..=63).map(|s| [s as f64, at(m, s).mean]).collect() })
@@ -62,7 +62,7 @@ fn samples() -> Vec<(&'static str, String)> {
         ("histogram", error_histogram(&HEADINGS, &series).unwrap()),
         ("by_size", error_by_size(&HEADINGS, &sizes).unwrap()),
         ("by_glyph", error_by_glyph(&HEADINGS, &by_glyph).unwrap()),
-        ("ablations", ablations(&HEADINGS, &variants).unwrap()),
+        ("ablations", box_plot(&HEADINGS, &variants).unwrap()),
         ("loss", loss_history(&HEADINGS, &losses, &[1000.0, 2000.0]).unwrap()),
         ("lines", lines(&HEADINGS, ["size of the box s (pixels)", "mean squared error"], &methods).unwrap()),
     ]
@@ -92,14 +92,14 @@ fn every_model_is_in_the_legend_and_every_glyph_under_its_column() {
 #[test]
 fn charts_without_values_or_with_odd_ones_still_draw() {
     let odd = vec![0.0, f64::NAN, f64::INFINITY];
-    let series = |values: &[f64]| vec![Series { name: "odd".into(), values: values.to_vec() }];
+    let series = |values: &[f64]| vec![ErrorSeries { name: "odd".into(), values: values.to_vec() }];
     let line = Line { name: "odd".into(), points: vec![[0.0, 0.0], [1.0, f64::NAN]] };
     let glyphs = GlyphSeries { name: "odd".into(), glyphs: vec![('&', 0.0), ('<', f64::NAN)] };
     for svg in [
         error_histogram(&HEADINGS, &series(&odd)).unwrap(),
         error_histogram(&HEADINGS, &[]).unwrap(),
-        ablations(&HEADINGS, &series(&odd)).unwrap(),
-        ablations(&HEADINGS, &[]).unwrap(),
+        box_plot(&HEADINGS, &series(&odd)).unwrap(),
+        box_plot(&HEADINGS, &[]).unwrap(),
         error_by_size(&HEADINGS, &[]).unwrap(),
         error_by_glyph(&HEADINGS, &[glyphs]).unwrap(),
         lines(&HEADINGS, ["x", "y"], &[line]).unwrap(),

@@ -1,22 +1,24 @@
-//! What the paper claims, and what was measured.
+//! The paper's claims beside the measurements.
 
-use super::super::error::{ErrorRow, Summary, summaries};
-use super::super::implicit::Implicit;
-use super::super::interpolation::{Drawing, names};
-use super::super::resize::Method;
-use super::super::scale::{Scale, Settings};
-use super::super::single::{Ablation, Choices, GRID_FIT, Model};
-use super::super::study::Findings;
-use super::{mean_of, of_model};
+use super::content::{mean_mse, rows_of_model};
+use crate::error_table::{ErrorRow, summaries};
+use crate::evaluation::ClassAccuracy;
+use crate::implicit::Implicit;
+use crate::interpolation::{Rendering, names};
+use crate::network_variant::{Ablation, GRID_FIT, NetworkVariant};
+use crate::resize::Method;
+use crate::settings::{ExperimentScale, Settings};
+use crate::statistics::Summary;
+use crate::study::StudyResults;
 
 /// A claim beside its measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
-    /// What the paper says.
-    pub said: &'static str,
-    /// What was measured, in figures.
+    /// The paper's statement.
+    pub statement: &'static str,
+    /// The measurement, in figures.
     pub measured: String,
-    /// Whether that is so here; `None` where there is nothing to decide.
+    /// Whether the measurement confirms the statement; `None` where it decides nothing.
     pub holds: Option<bool>,
 }
 
@@ -37,31 +39,31 @@ const MAGNITUDE: f64 = 10.0;
 const THIRD: usize = 3;
 
 /// All claims.
-pub fn claims(findings: &Findings, settings: &Settings) -> Vec<Claim> {
-    let implicit = of_model(&findings.outcomes, &Model::Implicit(Vec::new()).name());
-    let masked = of_model(&findings.outcomes, &Model::Masked.name());
-    let ours = of_model(&findings.outcomes, GRID_FIT);
+pub fn claims(results: &StudyResults, settings: &Settings) -> Vec<Claim> {
+    let implicit = rows_of_model(&results.evaluations, &NetworkVariant::Implicit(Vec::new()).name());
+    let masked = rows_of_model(&results.evaluations, &NetworkVariant::Masked.name());
+    let grid_fit = rows_of_model(&results.evaluations, GRID_FIT);
     let mut claims = vec![beats(&implicit, &masked), falls_with_size(&implicit), easy_and_hard(&implicit)];
-    claims.extend(Ablation::ALL.into_iter().map(|part| ablation(findings, &implicit, part)));
-    claims.push(interpolates(findings));
-    claims.push(shrinking(findings, &implicit, &ours));
-    claims.push(wrong_pixel(findings));
-    claims.push(classes(findings, &masked));
+    claims.extend(Ablation::ALL.into_iter().map(|part| ablation(results, &implicit, part)));
+    claims.push(interpolates(results));
+    claims.push(shrinking(results, &implicit, &grid_fit));
+    claims.push(wrong_pixel(results));
+    claims.push(classes(results, &masked));
     claims.push(megabytes(settings));
     claims
 }
 
 /// The rows of a font's characters that some other rows are of.
 fn same_glyphs(rows: &[ErrorRow], others: &[ErrorRow]) -> Vec<ErrorRow> {
-    let shown =
+    let paired =
         |row: &&ErrorRow| others.iter().any(|other| other.glyph == row.glyph && other.font == row.font);
-    rows.iter().filter(shown).cloned().collect()
+    rows.iter().filter(paired).cloned().collect()
 }
 
 fn beats(implicit: &[ErrorRow], masked: &[ErrorRow]) -> Claim {
-    let (a, b) = (mean_of(implicit), mean_of(masked));
+    let (a, b) = (mean_mse(implicit), mean_mse(masked));
     Claim {
-        said: "The implicit network's error is more than an order of magnitude below the masked one's",
+        statement: "The implicit network's error is more than an order of magnitude below the masked one's",
         measured: format!("mse {a:.2e} and {b:.2e}: {:.2} times as small", b / a),
         holds: Some(b / a > MAGNITUDE),
     }
@@ -73,7 +75,7 @@ fn falls_with_size(implicit: &[ErrorRow]) -> Claim {
     let mean = |part: &[f64]| Summary::of(part.iter().copied()).map_or(f64::NAN, |summary| summary.mean);
     let (small, large) = (mean(&by_size[..count]), mean(&by_size[by_size.len() - count..]));
     Claim {
-        said: "The error falls as the size grows",
+        statement: "The error falls as the size grows",
         measured: format!(
             "implicit: mse {small:.2e} in the smallest third of the sizes, {large:.2e} in the largest"
         ),
@@ -84,109 +86,111 @@ fn falls_with_size(implicit: &[ErrorRow]) -> Claim {
 fn easy_and_hard(implicit: &[ErrorRow]) -> Claim {
     let by_glyph = summaries(implicit, |row| row.glyph);
     let mean = |glyphs: &str| {
-        let known = glyphs.chars().filter_map(|glyph| by_glyph.get(&glyph));
-        Summary::of(known.map(|summary| summary.mean)).map(|summary| summary.mean)
+        let means = glyphs.chars().filter_map(|glyph| by_glyph.get(&glyph));
+        Summary::of(means.map(|summary| summary.mean)).map(|summary| summary.mean)
     };
     let mut order: Vec<(char, f64)> =
         by_glyph.iter().map(|(glyph, summary)| (*glyph, summary.mean)).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
     let order: Vec<String> = order.iter().map(|(glyph, mse)| format!("{glyph} {mse:.1e}")).collect();
     Claim {
-        said: "l and i are easy, g, m and w are hard",
+        statement: "l and i are easy, g, m and w are hard",
         measured: format!("implicit, from the easiest: {}", order.join(", ")),
         holds: mean("li").zip(mean("gmw")).map(|(easy, hard)| easy < hard),
     }
 }
 
-fn ablation(findings: &Findings, implicit: &[ErrorRow], part: Ablation) -> Claim {
-    let without = of_model(&findings.ablations, &Model::Implicit(vec![part]).name());
-    let (full, less) = (mean_of(&same_glyphs(implicit, &without)), mean_of(&without));
-    let said = match part {
+fn ablation(results: &StudyResults, implicit: &[ErrorRow], part: Ablation) -> Claim {
+    let without = rows_of_model(&results.ablations, &NetworkVariant::Implicit(vec![part]).name());
+    let (full, less) = (mean_mse(&same_glyphs(implicit, &without)), mean_mse(&without));
+    let statement = match part {
         Ablation::Frequencies => "Without the frequency encoding the error rises",
         Ablation::Memorisation => "Without the memorisation adaptations the error rises",
         Ablation::Residuals => "Without the residual additions the error rises",
         Ablation::Size => "(The paper's text has the size as an input, its code for one weight has not)",
     };
     Claim {
-        said,
+        statement,
         measured: format!("mse {less:.2e} without, {full:.2e} with: {:.2} times", less / full),
         holds: if part == Ablation::Size { None } else { Some(less > full) },
     }
 }
 
-fn interpolates(findings: &Findings) -> Claim {
+fn interpolates(results: &StudyResults) -> Claim {
     let mean = |name: &str| {
-        let drawn = findings.weights.iter().flat_map(|one| &one.between);
-        let mse = drawn.filter(|drawing| drawing.name == name).filter_map(Drawing::mse);
+        let drawn = results.weights.iter().flat_map(|one| &one.between);
+        let mse = drawn.filter(|rendering| rendering.name == name).filter_map(Rendering::mse);
         Summary::of(mse).map_or(f64::NAN, |summary| summary.mean)
     };
-    let [implicit, ours, snapped, first, last] =
+    let [implicit, grid_fit, snapped, first, last] =
         [names::IMPLICIT, names::GRID_FIT, names::SNAPPED, names::FIRST, names::LAST].map(mean);
     Claim {
-        said: "A network trained on medium and bold draws semi-bold from the interpolated latent vector, with artefacts",
+        statement: "A network trained on medium and bold draws semi-bold from the interpolated latent vector, with artefacts",
         measured: format!(
             "mse against semi-bold: {implicit:.2e}; medium and bold as they are {first:.2e} and {last:.2e}; the \
-             grid-fit field interpolated likewise {ours:.2e}, snapped {snapped:.2e}"
+             grid-fit field interpolated likewise {grid_fit:.2e}, snapped {snapped:.2e}"
         ),
-        // A picture between is worth something if it is nearer than what it lies between.
+        // An interpolated bitmap has to be nearer than either end.
         holds: Some(implicit < first.min(last)),
     }
 }
 
-fn shrinking(findings: &Findings, implicit: &[ErrorRow], ours: &[ErrorRow]) -> Claim {
+fn shrinking(results: &StudyResults, implicit: &[ErrorRow], grid_fit: &[ErrorRow]) -> Claim {
     // At the largest size nothing is shrunk.
-    let largest = findings.resized.iter().map(|row| row.side).max().unwrap_or(0);
-    let rows: Vec<ErrorRow> = findings.resized.iter().filter(|row| row.side < largest).cloned().collect();
+    let largest = results.resized.iter().map(|row| row.side).max().unwrap_or(0);
+    let rows: Vec<ErrorRow> = results.resized.iter().filter(|row| row.side < largest).cloned().collect();
     let by_method = summaries(&rows, |row| row.model.clone());
     let best = by_method.iter().min_by(|a, b| a.1.mean.total_cmp(&b.1.mean));
     let (name, best) = best.map_or((Method::Nearest.name(), f64::NAN), |(name, s)| (name.as_str(), s.mean));
-    let (ours, implicit) = (mean_of(&same_glyphs(ours, &rows)), mean_of(&same_glyphs(implicit, &rows)));
+    let (grid_fit, implicit) =
+        (mean_mse(&same_glyphs(grid_fit, &rows)), mean_mse(&same_glyphs(implicit, &rows)));
     Claim {
-        said: "A large bitmap shrunk by any of the usual methods is no substitute for the hinted one",
+        statement: "A large bitmap shrunk by any of the usual methods is no substitute for the hinted one",
         measured: format!(
-            "the best method, {name}: mse {best:.2e}; implicit {implicit:.2e}, grid-fit {ours:.2e}, unhinted {:.2e}",
-            mean_of(&findings.unhinted)
+            "the best method, {name}: mse {best:.2e}; implicit {implicit:.2e}, grid-fit {grid_fit:.2e}, unhinted {:.2e}",
+            mean_mse(&results.unhinted)
         ),
         holds: Some(best > implicit),
     }
 }
 
-fn wrong_pixel(findings: &Findings) -> Claim {
-    let mse = Summary::of(findings.wrong_pixel.iter().map(|one| one.mse)).map_or(f64::NAN, |s| s.mean);
+fn wrong_pixel(results: &StudyResults) -> Claim {
+    let mse = Summary::of(results.wrong_pixel.iter().map(|one| one.mse)).map_or(f64::NAN, |s| s.mean);
     Claim {
-        said: "A single wrong pixel is seen at once, although the error hardly changes",
+        statement: "A single wrong pixel is seen at once, although the error hardly changes",
         measured: format!("one pixel of ink gone at the smallest size: mse {mse:.2e}; see the picture"),
         holds: None,
     }
 }
 
-/// What rounding to classes takes, and whether the network chooses them rightly.
-fn classes(findings: &Findings, masked: &[ErrorRow]) -> Claim {
-    let name = Model::Implicit(Vec::new()).name();
-    let outcomes = findings.outcomes.iter().filter(|outcome| outcome.model == name);
-    let choices: Vec<Choices> = outcomes.filter_map(|outcome| outcome.choices).collect();
-    let wrong: usize = choices.iter().map(|one| one.wrong).sum();
-    let pixels: usize = choices.iter().map(|one| one.pixels).sum();
-    let [mse, rounding] = [|one: &Choices| one.mse, |one: &Choices| one.rounding]
-        .map(|of| Summary::of(choices.iter().map(of)).map_or(f64::NAN, |summary| summary.mean));
+/// The error of rounding to classes, and that of the network's choice of classes.
+fn classes(results: &StudyResults, masked: &[ErrorRow]) -> Claim {
+    let name = NetworkVariant::Implicit(Vec::new()).name();
+    let evaluations = results.evaluations.iter().filter(|evaluation| evaluation.model == name);
+    let class_accuracy: Vec<ClassAccuracy> =
+        evaluations.filter_map(|evaluation| evaluation.class_accuracy).collect();
+    let wrong: usize = class_accuracy.iter().map(|one| one.wrong).sum();
+    let pixels: usize = class_accuracy.iter().map(|one| one.pixels).sum();
+    let [mse, rounding] = [|one: &ClassAccuracy| one.mse, |one: &ClassAccuracy| one.rounding]
+        .map(|of| Summary::of(class_accuracy.iter().map(of)).map_or(f64::NAN, |summary| summary.mean));
     Claim {
-        said: "(The implicit network chooses one of 21 classes; the published code rounds down to them)",
+        statement: "(The implicit network chooses one of 21 classes; the published code rounds down to them)",
         measured: format!(
             "the right classes have mse {rounding:.2e} against the truth; {wrong} of {pixels} pixels are in a wrong one, \
              which is mse {mse:.2e} against the right ones, {:.2} times below the masked network's",
-            mean_of(masked) / mse
+            mean_mse(masked) / mse
         ),
         holds: None,
     }
 }
 
 fn megabytes(settings: &Settings) -> Claim {
-    let published = Settings::new(Scale::Paper);
+    let published = Settings::new(ExperimentScale::Paper);
     let parameters = |config| Implicit::parameters(config);
     let mebibytes = |count: usize| count as f64 * 4.0 / f64::from(1 << 20);
     let (text, code) = (parameters(published.implicit), parameters(Ablation::Size.apply(published.implicit)));
     Claim {
-        said: "A glyph's network has about 5 million parameters and takes 24 MB",
+        statement: "A glyph's network has about 5 million parameters and takes 24 MB",
         measured: format!(
             "{:.2} million and {:.1} MiB as in the published code, without the size as an input; {:.2} million and \
              {:.1} MiB with it; here {:.3} million",

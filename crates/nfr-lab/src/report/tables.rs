@@ -1,83 +1,101 @@
 //! The report's tables as CSV.
 
-use std::fmt::Write;
-
-use super::super::error::{ErrorRow, write_csv};
-use super::super::interpolation::Interpolation;
-use super::super::output::labelled;
-use super::super::single::{Choices, Outcome};
-use super::{Claim, Part};
+use super::claims::Claim;
+use super::content::ReportContext;
+use crate::error_table::{ErrorRow, code_point, csv_table, write_csv};
+use crate::evaluation::{ClassAccuracy, Evaluation};
+use crate::interpolation::Interpolation;
+use crate::output::labelled;
+use crate::study::{StoredResult, WrongPixel};
 use nfr_convert::error::Error;
 
 /// Every table: its file's name and its text.
-pub(super) fn all(part: &Part<'_>, claims: &[Claim]) -> Result<Vec<(&'static str, String)>, Error> {
-    let (label, f) = (part.label(), part.findings);
-    let of = |outcomes: &[Outcome]| -> Vec<ErrorRow> {
-        outcomes.iter().flat_map(|outcome| outcome.rows.clone()).collect()
+pub(super) fn all(
+    context: &ReportContext<'_>,
+    claims: &[Claim],
+) -> Result<Vec<(&'static str, String)>, Error> {
+    let (label, results) = (context.label(), context.results);
+    let of = |evaluations: &[Evaluation]| -> Vec<ErrorRow> {
+        evaluations.iter().flat_map(|evaluation| evaluation.rows.clone()).collect()
     };
     let between = |all: &[Interpolation]| -> Vec<ErrorRow> {
         all.iter().flat_map(|one| one.ends.iter().chain(&one.between)).flat_map(|d| d.rows.clone()).collect()
     };
     let tables = [
-        ("errors.csv", of(&f.outcomes)),
-        ("ablations.csv", of(&f.ablations)),
-        ("weights.csv", between(&f.weights)),
-        ("styles.csv", between(&f.styles)),
-        ("resizing.csv", f.resized.clone()),
-        ("unhinted.csv", f.unhinted.clone()),
+        ("errors.csv", of(&results.evaluations)),
+        ("ablations.csv", of(&results.ablations)),
+        ("weights.csv", between(&results.weights)),
+        ("styles.csv", between(&results.styles)),
+        ("resizing.csv", results.resized.clone()),
+        ("unhinted.csv", results.unhinted.clone()),
     ];
     let errors = tables.into_iter().map(|(name, rows)| Ok((name, write_csv(&rows)?)));
     let mut all = errors.collect::<Result<Vec<_>, Error>>()?;
-    all.push(("stored.csv", stored(part)));
-    all.push(("wrong-pixel.csv", wrong_pixel(part)));
-    all.push(("trainings.csv", trainings(part)));
-    all.push(("claims.csv", claimed(claims)));
+    all.push(("stored.csv", stored(context)?));
+    all.push(("wrong-pixel.csv", wrong_pixel(context)?));
+    all.push(("trainings.csv", trainings(context)?));
+    all.push(("claims.csv", claimed(claims)?));
     Ok(all.into_iter().map(|(name, table)| (name, labelled(&label, &table))).collect())
 }
 
-fn stored(part: &Part<'_>) -> String {
-    let mut table = "glyph,bits,bytes,mse,mse_before\n".to_owned();
-    for one in &part.findings.stored {
-        // A string takes everything that is written to it, here and below.
-        let (code, mse) = (u32::from(one.glyph), one.outcome.mse());
-        let _ = writeln!(table, "U+{code:04X},{},{},{mse:e},{:e}", one.bits, one.bytes, one.before);
-    }
-    table
+fn stored(context: &ReportContext<'_>) -> Result<String, Error> {
+    let record = |one: &StoredResult| {
+        let mse = [one.evaluation.mse(), one.mse_before].map(|mse| format!("{mse:e}"));
+        let [mse, before] = mse;
+        [code_point(one.glyph), one.bits.to_string(), one.bytes.to_string(), mse, before]
+    };
+    csv_table(["glyph", "bits", "bytes", "mse", "mse_before"], context.results.stored.iter().map(record))
 }
 
-fn wrong_pixel(part: &Part<'_>) -> String {
-    let mut table = "glyph,side,column,row,mse\n".to_owned();
-    for one in &part.findings.wrong_pixel {
-        let ([column, row], side) = (one.at, one.truth.side);
-        let _ = writeln!(table, "U+{:04X},{side},{column},{row},{:e}", u32::from(one.glyph), one.mse);
-    }
-    table
+fn wrong_pixel(context: &ReportContext<'_>) -> Result<String, Error> {
+    let record = |one: &WrongPixel| {
+        let [side, column, row] = [one.truth.side, one.at[0], one.at[1]].map(|number| number.to_string());
+        [code_point(one.glyph), side, column, row, format!("{:e}", one.mse)]
+    };
+    csv_table(["glyph", "side", "column", "row", "mse"], context.results.wrong_pixel.iter().map(record))
 }
 
-fn trainings(part: &Part<'_>) -> String {
-    let mut table =
-        "model,font,glyph,epochs,seconds,loss,pixels,wrong_class,class_mse,rounding_mse\n".to_owned();
-    let f = part.findings;
-    for one in f.outcomes.iter().chain(&f.ablations).filter(|outcome| !outcome.history.is_empty()) {
+fn trainings(context: &ReportContext<'_>) -> Result<String, Error> {
+    let results = context.results;
+    let trained = results.evaluations.iter().chain(&results.ablations).filter(|one| !one.history.is_empty());
+    let record = |one: &Evaluation| {
         let loss = one.history.last().map_or(f64::NAN, |epoch| epoch.loss);
-        let (code, epochs, seconds) = (u32::from(one.glyph), one.history.len(), one.seconds());
-        let choices = one.choices.map_or(",,,".into(), |Choices { pixels, wrong, mse, rounding }| {
-            format!("{pixels},{wrong},{mse:e},{rounding:e}")
+        let accuracy = one.class_accuracy.map(|ClassAccuracy { pixels, wrong, mse, rounding }| {
+            [pixels.to_string(), wrong.to_string(), format!("{mse:e}"), format!("{rounding:e}")]
         });
-        let _ = writeln!(
-            table,
-            "{},{},U+{code:04X},{epochs},{seconds:.1},{loss:e},{choices}",
-            one.model, one.font
-        );
-    }
-    table
+        let [pixels, wrong, mse, rounding] = accuracy.unwrap_or_default();
+        let (epochs, seconds) = (one.history.len().to_string(), format!("{:.1}", one.seconds()));
+        let (model, font) = (one.model.clone(), one.font.clone());
+        [
+            model,
+            font,
+            code_point(one.glyph),
+            epochs,
+            seconds,
+            format!("{loss:e}"),
+            pixels,
+            wrong,
+            mse,
+            rounding,
+        ]
+    };
+    let header = [
+        "model",
+        "font",
+        "glyph",
+        "epochs",
+        "seconds",
+        "loss",
+        "pixels",
+        "wrong_class",
+        "class_mse",
+        "rounding_mse",
+    ];
+    csv_table(header, trained.map(record))
 }
 
-fn claimed(claims: &[Claim]) -> String {
-    let mut table = "claim,measured,verdict\n".to_owned();
-    for claim in claims {
-        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-        let _ = writeln!(table, "{},{},{}", quoted(claim.said), quoted(&claim.measured), claim.verdict());
-    }
-    table
+fn claimed(claims: &[Claim]) -> Result<String, Error> {
+    let record =
+        |claim: &Claim| [claim.statement.to_owned(), claim.measured.clone(), claim.verdict().to_owned()];
+    csv_table(["claim", "measured", "verdict"], claims.iter().map(record))
 }

@@ -1,7 +1,7 @@
-//! Trainings on disk: what an interrupted one goes on from, and what a finished one left.
+//! Trainings on disk: the state that an interrupted one resumes from, and the result of a finished one.
 //!
-//! A checkpoint is one file that is replaced as a whole: a heading with the key of what is trained, then network,
-//! optimiser and history, each after its length, and a checksum.
+//! A checkpoint is one file that is replaced as a whole. It has four [records](nfr_convert::records): a heading with the
+//! key of the training, the network, the optimiser, and the history.
 
 use std::fs;
 use std::io;
@@ -10,14 +10,15 @@ use std::path::PathBuf;
 use burn::store::ModuleRecord;
 use burn::tensor::Bytes;
 
-use super::{Epoch, Learner, Run};
+use super::{Epoch, TrainableNetwork, Training};
 use crate::files;
 use nfr::internals::table::{FNV_BASIS, fnv1a};
 use nfr_convert::error::Error;
+use nfr_convert::records::{append_record, split_record};
 
-/// Begins the file; a key of 8 bytes follows.
-const MAGIC: &[u8; 10] = b"nfr lab 1\n";
-/// Bytes of a number in the file: lengths, the key, the checksum.
+/// Begins the heading; a key of 8 bytes follows.
+const MAGIC: &[u8; 10] = b"nfr lab 2\n";
+/// Bytes of a number in the heading and the history.
 const NUMBER: usize = 8;
 /// Bytes of an epoch in the file.
 const EPOCH: usize = 3 * NUMBER;
@@ -31,12 +32,12 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// A checkpoint file for a training that `described` determines: settings, seed, and what is learnt.
+    /// A checkpoint file for a training that `description` determines: settings, seed, and training samples.
     ///
     /// # Errors
     ///
-    /// `Io` if the file is there and `resume` is not asked for.
-    pub fn new(path: PathBuf, described: &[u8], resume: bool) -> Result<Self, Error> {
+    /// `Io` if the file is there and `resume` is false.
+    pub fn new(path: PathBuf, description: &[u8], resume: bool) -> Result<Self, Error> {
         if !resume && path.exists() {
             return Err(Error::Io(format!(
                 "{} holds a training; go on with it, or use it if it is finished, with --resume, or choose another \
@@ -44,7 +45,7 @@ impl Checkpoint {
                 path.display()
             )));
         }
-        Ok(Self { key: fnv1a(FNV_BASIS, described), path, resume })
+        Ok(Self { key: fnv1a(FNV_BASIS, description), path, resume })
     }
 
     /// The training that the file holds, or a new one of `network`.
@@ -52,40 +53,42 @@ impl Checkpoint {
     /// # Errors
     ///
     /// `Io` for a file that cannot be read or is of another training, `Malformed` for a damaged one.
-    pub fn begin<L: Learner>(&self, network: L) -> Result<Run<L>, Error> {
+    pub fn begin<L: TrainableNetwork>(&self, network: L) -> Result<Training<L>, Error> {
         let bytes = match fs::read(&self.path) {
             Ok(bytes) if self.resume => bytes,
             Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(self.unreadable(&e)),
-            _ => return Ok(Run::new(network)),
+            _ => return Ok(Training::new(network)),
         };
-        let shown = self.path.display();
-        let damaged = || Error::Io(format!("{shown} is damaged; delete it and train again"));
-        let Some((body, sum)) = bytes.split_last_chunk::<NUMBER>() else { return Err(damaged()) };
-        if fnv1a(FNV_BASIS, body) != u64::from_be_bytes(*sum) {
+        let path = self.path.display();
+        let damaged = || Error::Io(format!("{path} is damaged; delete it and train again"));
+        let mut rest = bytes.as_slice();
+        let mut record = || {
+            let (payload, after) = split_record(rest)?;
+            rest = after;
+            Some(payload)
+        };
+        let records = [record(), record(), record(), record()];
+        let [Some(heading), Some(weights), Some(optimizer), Some(history)] = records else {
+            return Err(damaged());
+        };
+        if !rest.is_empty() {
             return Err(damaged());
         }
-        let rest = body.strip_prefix(MAGIC).and_then(|rest| rest.strip_prefix(&self.key.to_be_bytes()));
-        let mut rest = rest.ok_or_else(|| {
-            Error::Io(format!(
-                "{shown} is of a training with other settings; repeat those, or choose another directory with --out"
-            ))
-        })?;
-        let mut part = || {
-            let (length, after) = rest.split_first_chunk::<NUMBER>()?;
-            let (part, after) = after.split_at_checked(usize::try_from(u64::from_be_bytes(*length)).ok()?)?;
-            rest = after;
-            Some(part)
-        };
-        let parts = [part(), part(), part()];
-        let [Some(weights), Some(optimizer), Some(history)] = parts else { return Err(damaged()) };
-        let mut run = Run::new(network);
+        if heading != self.heading() {
+            return Err(Error::Io(format!(
+                "{path} is of a training with other settings; repeat those, or choose another directory with --out"
+            )));
+        }
+        let mut training = Training::new(network);
         let record =
             ModuleRecord::from_bytes(Bytes::from_bytes_vec(weights.to_vec())).map_err(|_| damaged())?;
-        run.network = run.network.try_load_record(record).map_err(|_| damaged())?;
-        run.optimizer =
-            run.optimizer.from_bytes(Bytes::from_bytes_vec(optimizer.to_vec())).map_err(|_| damaged())?;
-        run.history = history.chunks_exact(EPOCH).map(read_epoch).collect();
-        Ok(run)
+        training.network = training.network.try_load_record(record).map_err(|_| damaged())?;
+        training.optimizer = training
+            .optimizer
+            .from_bytes(Bytes::from_bytes_vec(optimizer.to_vec()))
+            .map_err(|_| damaged())?;
+        training.history = history.chunks_exact(EPOCH).map(read_epoch).collect();
+        Ok(training)
     }
 
     /// Writes the training as it is by now; the file appears whole or not at all.
@@ -93,19 +96,21 @@ impl Checkpoint {
     /// # Errors
     ///
     /// `Io` if it cannot be written.
-    pub fn save<L: Learner>(&self, run: &Run<L>) -> Result<(), Error> {
+    pub fn save<L: TrainableNetwork>(&self, training: &Training<L>) -> Result<(), Error> {
         let failed =
             |e: &dyn std::fmt::Display| Error::Io(format!("cannot write {} ({e})", self.path.display()));
-        let weights = run.network.clone().into_record().into_bytes().map_err(|e| failed(&e))?;
-        let optimizer = run.optimizer.into_bytes().map_err(|e| failed(&e))?;
-        let history: Vec<u8> = run.history.iter().flat_map(written_epoch).collect();
-        let mut bytes = [MAGIC.as_slice(), &self.key.to_be_bytes()].concat();
-        for part in [&weights[..], &optimizer[..], &history] {
-            bytes.extend((part.len() as u64).to_be_bytes());
-            bytes.extend_from_slice(part);
+        let weights = training.network.clone().into_record().into_bytes().map_err(|e| failed(&e))?;
+        let optimizer = training.optimizer.into_bytes().map_err(|e| failed(&e))?;
+        let history: Vec<u8> = training.history.iter().flat_map(written_epoch).collect();
+        let mut bytes = Vec::new();
+        for payload in [&self.heading()[..], &weights[..], &optimizer[..], &history] {
+            append_record(&mut bytes, payload);
         }
-        bytes.extend(fnv1a(FNV_BASIS, &bytes).to_be_bytes());
         files::write(&self.path, &bytes)
+    }
+
+    fn heading(&self) -> Vec<u8> {
+        [MAGIC.as_slice(), &self.key.to_be_bytes()].concat()
     }
 
     fn unreadable(&self, error: &io::Error) -> Error {

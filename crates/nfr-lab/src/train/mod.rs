@@ -14,17 +14,17 @@ use nfr_convert::error::Error;
 const EPSILON: f32 = 1e-7;
 
 /// A network that learns from batches.
-pub trait Learner: Module {
-    /// What it learns from at once.
+pub trait TrainableNetwork: Module {
+    /// The data of one optimiser step.
     type Batch;
 
     /// The loss of a batch.
     fn loss(&self, batch: &Self::Batch) -> Tensor<1>;
 }
 
-/// How long and how fast to train.
+/// Epochs, learning rates and batch size of a training.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
+pub struct TrainingSchedule {
     /// The learning rate of each epoch.
     pub rates: Vec<f64>,
     /// Bitmaps in a batch.
@@ -45,7 +45,7 @@ pub struct Epoch {
 }
 
 /// A network in training.
-pub struct Run<L> {
+pub struct Training<L> {
     /// The network as it is by now.
     pub network: L,
     optimizer: ModuleOptimizer,
@@ -53,33 +53,33 @@ pub struct Run<L> {
     pub history: Vec<Epoch>,
 }
 
-impl<L: Learner> Run<L> {
+impl<L: TrainableNetwork> Training<L> {
     /// A training that has not begun.
     pub fn new(network: L) -> Self {
         let optimizer = AdamConfig::new().with_epsilon(EPSILON).init();
         Self { network, optimizer, history: Vec::new() }
     }
 
-    /// Trains until the course ends. `batch` makes a batch from the numbers of some of the `samples` bitmaps, `after`
+    /// Trains until the schedule ends. `batch` makes a batch from the numbers of some of the `samples` bitmaps, `after`
     /// is called after every epoch.
     ///
     /// # Errors
     ///
-    /// Whatever `after` returns.
+    /// Those of `after`.
     pub fn train(
         mut self,
-        course: &Course,
+        schedule: &TrainingSchedule,
         samples: usize,
         batch: impl Fn(&[usize]) -> L::Batch,
         mut after: impl FnMut(&Self) -> Result<(), Error>,
     ) -> Result<Self, Error> {
-        for epoch in self.history.len()..course.rates.len() {
+        for epoch in self.history.len()..schedule.rates.len() {
             let start = std::time::Instant::now();
-            let rate = course.rates[epoch];
+            let rate = schedule.rates[epoch];
             // Stream 0 is that of the first weights.
-            let order = Random::new(course.seed, epoch as u64 + 1).order(samples);
+            let order = Random::new(schedule.seed, epoch as u64 + 1).order(samples);
             let (mut sum, mut batches) = (0.0, 0);
-            for numbers in order.chunks(course.batch) {
+            for numbers in order.chunks(schedule.batch) {
                 let loss = self.network.loss(&batch(numbers));
                 sum += f64::from(loss.clone().inner().into_scalar::<f32>());
                 batches += 1;

@@ -1,8 +1,8 @@
 //! The ground truth: hinted bitmaps in square boxes, sized by the rule of the paper "Neural Font Rendering"
 //! (Anderson, Shamir, Fried).
 //!
-//! All glyphs of a set share one box of *s*×*s* pixels and one pen in it. The type is as large as the set allows: the
-//! box around all hinted glyphs, the pen and the baseline must not be larger than the square.
+//! All glyphs of a set share one box of *s*×*s* pixels and one origin in it. The type is as large as the set allows: the
+//! box around all hinted glyphs, the origin and the baseline must not be larger than the square.
 
 mod fit;
 mod store;
@@ -16,12 +16,12 @@ use std::ops::RangeInclusive;
 use read_fonts::tables::head::Flags;
 use read_fonts::{FontRef, TableProvider};
 
-use super::Square;
+use super::SquareBitmap;
 use nfr::Target;
 use nfr::{Bitmap, Placement};
 use nfr_convert::compare::metrics::coverage_at;
 use nfr_convert::error::Error;
-use nfr_convert::outline::Outline;
+use nfr_convert::teacher::Outline;
 use nfr_convert::teacher::Teacher;
 
 pub use store::store;
@@ -35,26 +35,26 @@ pub struct TruthSize {
     pub point_size: u32,
     /// The resolution in dots per inch, at least 72.
     pub resolution: u32,
-    /// What both make, in whole pixels per em.
+    /// The resulting size in whole pixels per em.
     pub ppem: u16,
-    /// The box around all glyphs, the pen and the baseline: x_min, y_min, x_max, y_max in pixels from the pen, y up.
+    /// The box around all glyphs, the origin and the baseline: x_min, y_min, x_max, y_max in pixels from the origin, y up.
     pub bounds: [i32; 4],
 }
 
 impl TruthSize {
-    /// Where the pen stands in the box: the column right of it, and the row below the baseline, counted from the top.
-    pub fn pen(&self) -> [i32; 2] {
+    /// The glyphs' common origin in the box: the column right of it, and the row below the baseline, counted from the top.
+    pub fn origin(&self) -> [i32; 2] {
         [-self.bounds[0], self.bounds[3]]
     }
 
     /// The column and the row, from the top, of the box's pixel where a bitmap's first pixel lies.
     pub fn corner(&self, placement: &Placement) -> [i32; 2] {
-        let [column, row] = self.pen();
+        let [column, row] = self.origin();
         [column + placement.left, row - placement.top]
     }
 
-    /// A bitmap in the box, the pen where it stands for all glyphs. What sticks out is cut off.
-    pub fn square(&self, bitmap: &Bitmap) -> Square {
+    /// A bitmap in the box, its origin where it is for all glyphs. What lies outside is cut off.
+    pub fn square(&self, bitmap: &Bitmap) -> SquareBitmap {
         let mut pixels = vec![0; self.side * self.side];
         let [left, top] = self.corner(&bitmap.placement);
         let inside = |v: i32| usize::try_from(v).ok().filter(|&v| v < self.side);
@@ -65,7 +65,7 @@ impl TruthSize {
                 }
             }
         }
-        Square { side: self.side, pixels }
+        SquareBitmap { side: self.side, pixels }
     }
 }
 
@@ -74,17 +74,17 @@ impl TruthSize {
 pub struct Truth {
     /// The sizes, ascending.
     pub sizes: Vec<TruthSize>,
-    /// What is not quite as in the paper: fonts that ask for sizes between whole pixels, hints switched off, programs
+    /// Deviations from the paper: fonts that ask for sizes between whole pixels, hints switched off, programs
     /// that fail. In sentences, for people.
     pub warnings: Vec<String>,
     gids: Vec<u16>,
     /// By pixels per em, in the order of `gids`.
-    drawn: BTreeMap<u16, Vec<Pair>>,
+    drawn: BTreeMap<u16, Vec<GlyphBitmaps>>,
 }
 
 /// A glyph at one size.
 #[derive(Debug, Clone)]
-struct Pair {
+struct GlyphBitmaps {
     hinted: Bitmap,
     plain: Bitmap,
 }
@@ -147,7 +147,7 @@ impl Truth {
         &self.gids
     }
 
-    /// A glyph's hinted bitmap at the size with this index, as large as FreeType's and placed from the pen.
+    /// A glyph's hinted bitmap at the size with this index, as large as FreeType's and placed from the origin.
     ///
     /// # Errors
     ///
@@ -161,20 +161,20 @@ impl Truth {
     /// # Errors
     ///
     /// As `bitmap`.
-    pub fn hinted(&self, gid: u16, index: usize) -> Result<Square, Error> {
+    pub fn hinted(&self, gid: u16, index: usize) -> Result<SquareBitmap, Error> {
         self.pair(gid, index).map(|(size, pair)| size.square(&pair.hinted))
     }
 
-    /// The same glyph without its hints, at the same pixels per em and the same pen.
+    /// The same glyph without its hints, at the same pixels per em and the same origin.
     ///
     /// # Errors
     ///
     /// As `bitmap`.
-    pub fn plain(&self, gid: u16, index: usize) -> Result<Square, Error> {
+    pub fn plain(&self, gid: u16, index: usize) -> Result<SquareBitmap, Error> {
         self.pair(gid, index).map(|(size, pair)| size.square(&pair.plain))
     }
 
-    fn pair(&self, gid: u16, index: usize) -> Result<(&TruthSize, &Pair), Error> {
+    fn pair(&self, gid: u16, index: usize) -> Result<(&TruthSize, &GlyphBitmaps), Error> {
         let size = self.sizes.get(index).ok_or_else(|| {
             let count = self.sizes.len();
             Error::InvalidParameter(format!("there is no size {index}; count from 0 to below {count}"))
@@ -188,21 +188,21 @@ impl Truth {
     }
 }
 
-/// The hinted outlines of a set, drawn once per size: the rule asks for the same sizes again and again.
+/// The hinted outlines of a set, drawn once per size, since the rule tries the same sizes many times.
 struct Hinter<'t> {
     teacher: &'t Teacher,
     gids: &'t [u16],
-    sizes: BTreeMap<u16, Hinted>,
+    sizes: BTreeMap<u16, HintedSet>,
 }
 
-struct Hinted {
+struct HintedSet {
     outlines: Vec<Outline>,
     bounds: [i32; 4],
     warnings: Vec<String>,
 }
 
 impl Hinter<'_> {
-    fn at(&mut self, ppem: u16) -> Result<&Hinted, Error> {
+    fn at(&mut self, ppem: u16) -> Result<&HintedSet, Error> {
         if !self.sizes.contains_key(&ppem) {
             let hinted = self.hint(ppem)?;
             self.sizes.insert(ppem, hinted);
@@ -210,7 +210,7 @@ impl Hinter<'_> {
         Ok(&self.sizes[&ppem])
     }
 
-    fn hint(&self, ppem: u16) -> Result<Hinted, Error> {
+    fn hint(&self, ppem: u16) -> Result<HintedSet, Error> {
         let at = self.teacher.at(ppem)?;
         let mut warnings = Vec::new();
         if !at.is_hinted() {
@@ -220,7 +220,7 @@ impl Hinter<'_> {
         }
         let mut outlines = Vec::with_capacity(self.gids.len());
         for &gid in self.gids {
-            let (outline, complaint) = at.hinted_or_complaint(gid)?;
+            let (outline, complaint) = at.hinted_with_error(gid)?;
             warnings.extend(complaint);
             outlines.push(outline);
         }
@@ -228,16 +228,16 @@ impl Hinter<'_> {
             let (right, bottom) = (place.left + place.width as i32, place.top - place.height as i32);
             [all[0].min(place.left), all[1].min(bottom), all[2].max(right), all[3].max(place.top)]
         });
-        Ok(Hinted { outlines, bounds, warnings })
+        Ok(HintedSet { outlines, bounds, warnings })
     }
 
-    fn draw(&mut self, ppem: u16, warnings: &mut Vec<String>) -> Result<Vec<Pair>, Error> {
+    fn draw(&mut self, ppem: u16, warnings: &mut Vec<String>) -> Result<Vec<GlyphBitmaps>, Error> {
         let (teacher, gids) = (self.teacher, self.gids);
         let hinted = self.at(ppem)?;
         warnings.extend(hinted.warnings.iter().cloned());
         let pair = |(outline, &gid): (&Outline, &u16)| {
             let plain = teacher.unhinted(gid, ppem.into())?;
-            Ok(Pair { hinted: framed(outline)?, plain: framed(&plain)? })
+            Ok(GlyphBitmaps { hinted: framed(outline)?, plain: framed(&plain)? })
         };
         hinted.outlines.iter().zip(gids).map(pair).collect()
     }

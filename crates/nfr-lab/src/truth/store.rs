@@ -2,15 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io;
+use std::io::{self, Cursor};
 use std::path::Path;
 
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use image::{GrayImage, ImageFormat};
 use serde::Serialize;
 
-use super::Truth;
-use crate::Square;
+use super::{Truth, TruthSize};
+use crate::SquareBitmap;
 use nfr_convert::error::Error;
 
 /// The file that says what the others are.
@@ -39,7 +38,7 @@ struct SizeEntry {
 
 /// Writes a directory with one PNG for each glyph and size, named as `20/u0061.png`, ink black on white, and
 /// `manifest.json` with the font's name, the set, and of each size the side in pixels, the size in points, the
-/// resolution in dpi, the pixels per em, the box in pixels from the pen, and the files by code point. A truth that
+/// resolution in dpi, the pixels per em, the box in pixels from the origin, and the files by code point. A truth that
 /// was written there before is replaced. The directory appears whole or not at all.
 ///
 /// # Errors
@@ -81,9 +80,7 @@ fn files(truth: &Truth, font: &str, glyphs: &[(char, u16)]) -> Result<Vec<(Strin
             files.push((name.clone(), png(&truth.hinted(gid, index)?)?));
             names.insert(format!("U+{code:04X}"), name);
         }
-        let [x_min, y_min, x_max, y_max] = size.bounds;
-        let (side, ppem) = (size.side, size.ppem);
-        let (point_size, resolution) = (size.point_size, size.resolution);
+        let TruthSize { side, point_size, resolution, ppem, bounds: [x_min, y_min, x_max, y_max] } = *size;
         sizes.push(SizeEntry {
             side,
             point_size,
@@ -105,17 +102,19 @@ fn files(truth: &Truth, font: &str, glyphs: &[(char, u16)]) -> Result<Vec<(Strin
 }
 
 /// Coverage as a grey picture, ink black on white.
-fn png(square: &Square) -> Result<Vec<u8>, Error> {
-    let ink: Vec<u8> = square.pixels.iter().map(|coverage| 255 - coverage).collect();
+fn png(square: &SquareBitmap) -> Result<Vec<u8>, Error> {
     let side = square.side as u32;
-    let mut file = Vec::new();
-    PngEncoder::new(&mut file).write_image(&ink, side, side, ExtendedColorType::L8).map_err(|e| {
-        Error::LimitExceeded(format!("a picture of {side}×{side} pixels cannot be written ({e})"))
-    })?;
-    Ok(file)
+    let ink = square.pixels.iter().map(|coverage| 255 - coverage).collect();
+    let mut file = Cursor::new(Vec::new());
+    let written =
+        GrayImage::from_raw(side, side, ink).map(|picture| picture.write_to(&mut file, ImageFormat::Png));
+    match written {
+        Some(Ok(())) => Ok(file.into_inner()),
+        _ => Err(Error::LimitExceeded(format!("a picture of {side}×{side} pixels cannot be written"))),
+    }
 }
 
-/// Nobody's files go: a place is free, an empty directory, or one with a truth in it.
+/// Refuses a directory with other files than a truth, so that nothing else is deleted.
 fn check_replaceable(directory: &Path) -> Result<(), Error> {
     let occupied = if directory.is_dir() {
         let entries = fs::read_dir(directory).map(|mut entries| entries.next().is_some());

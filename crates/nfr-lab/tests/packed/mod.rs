@@ -1,10 +1,17 @@
 //! Networks packed without the C library that the converter packs them with.
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
-use nfr::internals::model::network::NetworkWeights;
-use nfr::internals::table::Precision;
-use nfr::internals::table::network::encode;
+use nfr::internals::network::Precision;
+use nfr::internals::network::encode;
+use nfr::internals::network::{Architecture, NetworkWeights};
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
+
+/// A small network.
+pub(crate) const CONDITIONED_ARCHITECTURE: Architecture =
+    Architecture { width: 12, latent: 5, encoder: 6, frequencies: true, residual: true };
+/// Without sizes among its inputs, and as small as can be.
+pub(crate) const PLAIN_ARCHITECTURE: Architecture =
+    Architecture { width: 3, latent: 0, encoder: 0, frequencies: false, residual: false };
 
 /// Bytes of a block; 128 KiB are allowed (RFC 8878, sec. 3.1.1.2.3).
 const BLOCK: usize = 4 << 10;

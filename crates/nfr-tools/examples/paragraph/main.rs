@@ -2,17 +2,16 @@
 //!
 //! `cargo run --release --example paragraph -- NEURAL.ttf ORIGINAL.ttf OUT.png [--text TEXT] [--ppem 11,13,16,24]
 //! [--width 320]`: for each size a row of three columns, black on white, one pixel for a pixel. The text is shaped with
-//! its kerning; advances are the font's own, neither hinted nor rounded, and each glyph is drawn with the pen at the
-//! nearest quarter of a pixel, on a baseline at a whole one.
+//! its kerning; advances are the font's own, neither hinted nor rounded, and each glyph is drawn with its origin at
+//! the nearest quarter of a pixel, on a baseline at a whole one.
 //!
 //! It prints how many glyphs a second each renderer draws: all glyphs of the paragraph one after the other, none kept,
-//! the median of 15 passes. What is timed ends with the glyph's coverage in memory; laying it on the picture is not
+//! the median of 15 passes. What is timed ends with the glyph's coverage in memory; blending it into the picture is not
 //! part of it.
 
 #![allow(clippy::print_stdout)]
 
 mod layout;
-mod picture;
 mod renderer;
 #[path = "../shared/skrifa_zeno.rs"]
 mod skrifa_zeno;
@@ -25,11 +24,12 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
+use image::{GrayImage, Luma};
+use nfr::Placement;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::ppem::PpemList;
 
-use layout::{Placed, Shaped, shape};
-use picture::{Ink, Picture};
+use layout::{PositionedGlyph, ShapedText, shape};
 use renderer::Renderer;
 
 const TEXT: &str = "A page of text is where hinting shows: bars fall on whole pixels, bowls keep their height, and \
@@ -41,7 +41,9 @@ const TEXT: &str = "A page of text is where hinting shows: bars fall on whole pi
 const MARGIN: usize = 16;
 /// The size of the captions, and how dark they are.
 const CAPTION: (u16, u8) = (11, 150);
-/// Passes over the paragraph; the middle one counts.
+/// No picture has more pixels.
+const MAX_PIXELS: usize = 64_000_000;
+/// Timed passes over the paragraph, of which the median is printed.
 const PASSES: usize = 15;
 
 /// Draws a paragraph from the models, hinted, and unhinted
@@ -67,7 +69,7 @@ struct Args {
 /// A paragraph at a size, and where it lies in the picture.
 struct Block {
     ppem: u16,
-    lines: Vec<Vec<Placed>>,
+    lines: Vec<Vec<PositionedGlyph>>,
     top: usize,
     ascent: usize,
     line_height: usize,
@@ -91,7 +93,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     check_models(&pair, &text, &shaped)?;
     let (blocks, height) = blocks(&pair, &shaped, args);
     let column = usize::from(args.width) + MARGIN;
-    let mut picture = Picture::new(MARGIN + 3 * column, height)?;
+    let mut picture = blank(MARGIN + 3 * column, height)?;
     for block in &blocks {
         let mut renderers = Renderer::all(&pair, block.ppem)?;
         for (k, renderer) in renderers.iter_mut().enumerate() {
@@ -103,7 +105,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         }
         println!("{}", block.speed(&pair, &mut renderers)?);
     }
-    picture.save(&args.out)
+    picture.save(&args.out).map_err(|e| format!("cannot write {} ({e})", args.out.display()).into())
+}
+
+/// White paper.
+fn blank(width: usize, height: usize) -> Result<GrayImage, Box<dyn Error>> {
+    if width.saturating_mul(height) > MAX_PIXELS {
+        return Err(format!(
+            "the picture would have {width}×{height} pixels; choose fewer sizes or less text"
+        )
+        .into());
+    }
+    Ok(GrayImage::from_pixel(width.try_into()?, height.try_into()?, Luma([255])))
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, String> {
@@ -111,7 +124,7 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// Names the first character that cannot be drawn.
-fn check_models(pair: &FontPair<'_>, text: &str, shaped: &Shaped) -> Result<(), Box<dyn Error>> {
+fn check_models(pair: &FontPair<'_>, text: &str, shaped: &ShapedText) -> Result<(), Box<dyn Error>> {
     if shaped.glyphs().is_empty() {
         return Err("the text has nothing to draw; give another one with --text".into());
     }
@@ -128,7 +141,7 @@ fn check_models(pair: &FontPair<'_>, text: &str, shaped: &Shaped) -> Result<(), 
 }
 
 /// The paragraph at each size, one below the other, and the height of all.
-fn blocks(pair: &FontPair<'_>, shaped: &Shaped, args: &Args) -> (Vec<Block>, usize) {
+fn blocks(pair: &FontPair<'_>, shaped: &ShapedText, args: &Args) -> (Vec<Block>, usize) {
     let mut top = MARGIN;
     let blocks = args.ppem.sizes().iter().map(|&ppem| {
         let metrics = pair.font().line_metrics(ppem.into());
@@ -155,8 +168,8 @@ fn caption_height() -> usize {
     usize::from(CAPTION.0) * 7 / 4
 }
 
-/// The pen in whole pixels, and the rest in quarters.
-fn snap(units: i32, ppem: u16, units_per_em: i32) -> (i64, f32) {
+/// A position in whole pixels, and the subpixel offset in quarters of one.
+fn split_position(units: i32, ppem: u16, units_per_em: i32) -> (i64, f32) {
     let pixels = f64::from(units) * f64::from(ppem) / f64::from(units_per_em);
     let quarters = (pixels * 4.0).round() as i64;
     (quarters.div_euclid(4), quarters.rem_euclid(4) as f32 / 4.0)
@@ -168,24 +181,24 @@ impl Block {
         &self,
         pair: &FontPair<'_>,
         renderer: &mut Renderer,
-        picture: &mut Picture,
+        picture: &mut GrayImage,
         columns: &Range<i64>,
         left: i64,
     ) -> Result<(), Box<dyn Error>> {
         let first = self.top + caption_height() + self.ascent;
         for (line, baseline) in self.lines.iter().zip((first..).step_by(self.line_height)) {
-            let at = At { left, baseline: baseline as i64, ppem: self.ppem, darkness: 255 };
-            at.line(pair, line, renderer, picture, columns)?;
+            let style = LineStyle { left, baseline: baseline as i64, ppem: self.ppem, darkness: 255 };
+            style.draw(pair, line, renderer, picture, columns)?;
         }
         Ok(())
     }
 
-    /// Says above a column what it shows, in the font itself.
+    /// Draws the renderer's name and the size above a column, in the font itself.
     fn caption(
         &self,
         pair: &FontPair<'_>,
         name: &str,
-        picture: &mut Picture,
+        picture: &mut GrayImage,
         columns: &Range<i64>,
         left: i64,
     ) -> Result<(), Box<dyn Error>> {
@@ -194,7 +207,7 @@ impl Block {
         let baseline = (self.top + usize::from(ppem)) as i64;
         let mut plain = Renderer::unhinted(pair, ppem)?;
         let line = shaped.lines(i32::MAX).concat();
-        At { left, baseline, ppem, darkness }.line(pair, &line, &mut plain, picture, columns)
+        LineStyle { left, baseline, ppem, darkness }.draw(pair, &line, &mut plain, picture, columns)
     }
 
     /// How many glyphs a second each renderer draws, as a line of text.
@@ -203,7 +216,7 @@ impl Block {
             .lines
             .iter()
             .flatten()
-            .map(|glyph| (glyph.gid, snap(glyph.x, self.ppem, units_per_em(pair)).1))
+            .map(|glyph| (glyph.gid, split_position(glyph.x, self.ppem, units_per_em(pair)).1))
             .collect();
         let mut times = vec![Vec::new(); renderers.len()];
         // The first pass fills the caches.
@@ -225,31 +238,56 @@ impl Block {
     }
 }
 
-/// Where and how a line is drawn.
-struct At {
+/// The position, size and darkness of a line.
+struct LineStyle {
     left: i64,
     baseline: i64,
     ppem: u16,
     darkness: u8,
 }
 
-impl At {
-    fn line(
+impl LineStyle {
+    fn draw(
         &self,
         pair: &FontPair<'_>,
-        line: &[Placed],
+        line: &[PositionedGlyph],
         renderer: &mut Renderer,
-        picture: &mut Picture,
+        picture: &mut GrayImage,
         columns: &Range<i64>,
     ) -> Result<(), Box<dyn Error>> {
         for glyph in line {
-            let (whole, rest) = snap(glyph.x, self.ppem, units_per_em(pair));
-            let (up, _) = snap(glyph.y, self.ppem, units_per_em(pair));
-            let (place, coverage) = renderer.draw(glyph.gid, rest)?;
-            let x = self.left + whole + i64::from(place.left);
-            let y = self.baseline - up - i64::from(place.top);
-            picture.blend(&Ink { x, y, width: place.width as usize, coverage }, columns, self.darkness);
+            let (x, offset) = split_position(glyph.x, self.ppem, units_per_em(pair));
+            let (y, _) = split_position(glyph.y, self.ppem, units_per_em(pair));
+            let (place, coverage) = renderer.draw(glyph.gid, offset)?;
+            blend(picture, [self.left + x, self.baseline - y], &place, coverage, columns, self.darkness);
         }
         Ok(())
     }
+}
+
+/// Blends a glyph into the picture, within these columns: where two glyphs overlap, the light that the first lets through
+/// meets the second.
+fn blend(
+    picture: &mut GrayImage,
+    [x, y]: [i64; 2],
+    place: &Placement,
+    coverage: &[u8],
+    columns: &Range<i64>,
+    darkness: u8,
+) {
+    let (left, top) = (x + i64::from(place.left), y - i64::from(place.top));
+    for (y, row) in (top..).zip(coverage.chunks_exact(place.width.max(1) as usize)) {
+        for (x, &coverage) in (left..).zip(row).filter(|(x, _)| columns.contains(x)) {
+            let at = u32::try_from(x).ok().zip(u32::try_from(y).ok());
+            if let Some(pixel) = at.and_then(|(x, y)| picture.get_pixel_mut_checked(x, y)) {
+                pixel.0[0] = product(pixel.0[0], 255 - product(coverage, darkness));
+            }
+        }
+    }
+}
+
+/// Two shares of 255, multiplied and rounded.
+fn product(a: u8, b: u8) -> u8 {
+    // At most 255.
+    ((u16::from(a) * u16::from(b) + 127) / 255) as u8
 }

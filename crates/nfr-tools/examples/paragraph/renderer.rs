@@ -1,4 +1,4 @@
-//! Three ways to draw a glyph with the pen between pixels.
+//! Three ways to draw a glyph at a subpixel offset.
 
 use std::error::Error;
 
@@ -43,7 +43,7 @@ impl Renderer {
         }
     }
 
-    /// Draws a glyph's coverage with the pen at `x`, a part of a pixel, on the baseline.
+    /// Draws a glyph's coverage at the subpixel offset `x`, on the baseline.
     pub(crate) fn draw(&mut self, gid: u16, x: f32) -> Result<(Placement, &[u8]), Box<dyn Error>> {
         match self {
             Self::Neural { rasterizer, ppem } => {

@@ -1,5 +1,5 @@
 //! How an application draws hinted glyphs in Rust without models: skrifa runs the font's programs, zeno fills the
-//! outlines. Whatever can be kept from one glyph to the next is kept.
+//! outlines. Memory is kept from one glyph to the next.
 
 use std::error::Error;
 
@@ -24,7 +24,7 @@ impl SkrifaZeno {
         Self { path: Path::default(), memory: Vec::new(), scratch: Scratch::new(), pixels: Vec::new() }
     }
 
-    /// Draws a glyph's coverage, 0–255, top row first, with the pen at `x` pixels. Font, size and hinting are the
+    /// Draws a glyph's coverage, 0–255, top row first, with its origin at `x` pixels. Font, size and hinting are the
     /// scaler's.
     pub(crate) fn draw(
         &mut self,

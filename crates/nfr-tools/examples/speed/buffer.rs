@@ -1,4 +1,4 @@
-//! Memory that a renderer draws into, and what lies in it then.
+//! The buffer that a renderer draws into, and the coverage in it.
 
 use std::error::Error;
 

@@ -27,16 +27,16 @@ use skrifa::font::Blob;
 use skrifa::{HintOptions, ScalerSource};
 
 use super::buffer::Buffer;
-use super::round::Contestant;
+use super::round::Candidate;
 use super::skrifa_zeno::{SkrifaZeno, check, hint_options, hinted, outlines};
 use super::warm::FreeType;
 
-/// Those that draw at a size, or at all, for the first time.
-pub(crate) fn contestants<'a>(
+/// The candidates that draw at a size, or at all, for the first time.
+pub(crate) fn candidates<'a>(
     pair: &'a FontPair<'a>,
     neural: Arc<[u8]>,
     original: Arc<[u8]>,
-) -> Result<Vec<Contestant<'a>>, Box<dyn Error>> {
+) -> Result<Vec<Candidate<'a>>, Box<dyn Error>> {
     let options = hint_options(pair.font().target())?;
     let outlines = outlines(owned(pair.original())?);
     let freetype = FreeType::new(&original, pair.font().target())?;
@@ -73,8 +73,8 @@ fn draw(rasterizer: &mut Rasterizer, gid: u16, ppem: u16, buffer: &mut Buffer) -
     Ok(())
 }
 
-fn nfr_cold(font: &Font) -> Contestant<'_> {
-    Contestant::new("nfr_cold", move |ppem, gids| {
+fn nfr_cold(font: &Font) -> Candidate<'_> {
+    Candidate::new("nfr_cold", move |ppem, gids| {
         let mut buffer = buffer(font, ppem, gids)?;
         let time = |gid: &u16| {
             // A new one each time, so that nothing can be left of this size.
@@ -86,9 +86,9 @@ fn nfr_cold(font: &Font) -> Contestant<'_> {
     })
 }
 
-fn skrifa_cold<'a>(outlines: ScalerSource, options: HintOptions) -> Contestant<'a> {
+fn skrifa_cold<'a>(outlines: ScalerSource, options: HintOptions) -> Candidate<'a> {
     let mut renderer = SkrifaZeno::new();
-    Contestant::new("skrifa_cold", move |ppem, gids| {
+    Candidate::new("skrifa_cold", move |ppem, gids| {
         timed(|| {
             for &gid in gids {
                 let scaler = hinted(outlines.clone(), black_box(ppem), options)?;
@@ -99,9 +99,9 @@ fn skrifa_cold<'a>(outlines: ScalerSource, options: HintOptions) -> Contestant<'
     })
 }
 
-fn skrifa_reconfigured<'a>(outlines: ScalerSource, options: HintOptions) -> Contestant<'a> {
+fn skrifa_reconfigured<'a>(outlines: ScalerSource, options: HintOptions) -> Candidate<'a> {
     let mut renderer = SkrifaZeno::new();
-    Contestant::new("skrifa_reconfigured", move |ppem, gids| {
+    Candidate::new("skrifa_reconfigured", move |ppem, gids| {
         let mut scaler = hinted(outlines.clone(), next_to(ppem), options)?;
         let mut draw = |gid: u16, ppem: u16| -> Result<(), Box<dyn Error>> {
             scaler.reconfigure(outlines.clone(), f32::from(black_box(ppem)), options);
@@ -117,8 +117,8 @@ fn skrifa_reconfigured<'a>(outlines: ScalerSource, options: HintOptions) -> Cont
     })
 }
 
-fn freetype_cold<'a>(face: FreeType) -> Contestant<'a> {
-    Contestant::new("freetype_cold", move |ppem, gids| {
+fn freetype_cold<'a>(face: FreeType) -> Candidate<'a> {
+    Candidate::new("freetype_cold", move |ppem, gids| {
         let draw = |gid: u16, ppem: u16| {
             face.set_size(black_box(ppem))?;
             face.draw(black_box(gid), &mut |pixels| {
@@ -133,15 +133,15 @@ fn freetype_cold<'a>(face: FreeType) -> Contestant<'a> {
     })
 }
 
-fn nfr_first(font: &Font) -> Contestant<'_> {
-    Contestant::new("nfr_first", move |ppem, gids| {
+fn nfr_first(font: &Font) -> Candidate<'_> {
+    Candidate::new("nfr_first", move |ppem, gids| {
         let mut buffer = buffer(font, ppem, gids)?;
         timed(|| gids.iter().try_for_each(|gid| draw(&mut Rasterizer::new(font), *gid, ppem, &mut buffer)))
     })
 }
 
-fn nfr_open<'a>(neural: Arc<[u8]>) -> Contestant<'a> {
-    Contestant::new("nfr_open", move |ppem, gids| {
+fn nfr_open<'a>(neural: Arc<[u8]>) -> Candidate<'a> {
+    Candidate::new("nfr_open", move |ppem, gids| {
         let mut buffer = buffer(&Font::new(neural.clone())?, ppem, gids)?;
         timed(|| {
             for &gid in gids {
@@ -153,8 +153,8 @@ fn nfr_open<'a>(neural: Arc<[u8]>) -> Contestant<'a> {
     })
 }
 
-fn skrifa_open<'a>(original: Arc<[u8]>, options: HintOptions) -> Contestant<'a> {
-    Contestant::new("skrifa_open", move |ppem, gids| {
+fn skrifa_open<'a>(original: Arc<[u8]>, options: HintOptions) -> Candidate<'a> {
+    Candidate::new("skrifa_open", move |ppem, gids| {
         timed(|| {
             for &gid in gids {
                 let data = Blob::Shared(Arc::new(black_box(original.clone())));

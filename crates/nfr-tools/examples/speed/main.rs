@@ -26,7 +26,7 @@ use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::ppem::PpemList;
 use nfr_convert::select::{CodePoints, Selection};
 
-use round::Contestant;
+use round::Candidate;
 
 /// Times the drawing of glyphs beside other renderers
 #[derive(Parser)]
@@ -63,21 +63,21 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let (neural, original) = (read(&args.neural)?, read(&args.original)?);
     let pair = FontPair::open(&original, 0, &neural)?;
     let gids = glyphs(&pair, &args.unicodes)?;
-    let mut contestants = warm::contestants(&pair, &original)?;
-    contestants.extend(cold::contestants(&pair, neural.as_slice().into(), original.as_slice().into())?);
+    let mut candidates = warm::candidates(&pair, &original)?;
+    candidates.extend(cold::candidates(&pair, neural.as_slice().into(), original.as_slice().into())?);
     if !args.json {
         println!("{}\n", table::title(&args.neural, gids.len(), args.rounds));
     }
     let mut results = Vec::new();
     for &ppem in args.ppem.sizes() {
-        let times = round::medians(&mut contestants, ppem, &gids, args.rounds)?;
+        let times = round::medians(&mut candidates, ppem, &gids, args.rounds)?;
         if args.json {
-            println!("{}", table::json(ppem, &contestants, &times));
+            println!("{}", table::json(ppem, &candidates, &times));
         }
         results.push((ppem, times));
     }
     if !args.json {
-        let names: Vec<&str> = contestants.iter().map(Contestant::name).collect();
+        let names: Vec<&str> = candidates.iter().map(Candidate::name).collect();
         print!("{}", table::for_people(&names, &results));
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Taking turns, and what is made of the times.
+//! Timing candidates in turn, and the median of their times.
 
 use std::error::Error;
 use std::time::Duration;
@@ -9,13 +9,13 @@ const TURN: Duration = Duration::from_millis(1);
 /// Draws every glyph once at a size and says how long that took.
 type Pass<'a> = Box<dyn FnMut(u16, &[u16]) -> Result<Duration, Box<dyn Error>> + 'a>;
 
-/// One way of drawing.
-pub(crate) struct Contestant<'a> {
+/// A renderer and the operation that is timed.
+pub(crate) struct Candidate<'a> {
     name: &'static str,
     pass: Pass<'a>,
 }
 
-impl<'a> Contestant<'a> {
+impl<'a> Candidate<'a> {
     pub(crate) fn new(
         name: &'static str,
         pass: impl FnMut(u16, &[u16]) -> Result<Duration, Box<dyn Error>> + 'a,
@@ -40,22 +40,22 @@ impl<'a> Contestant<'a> {
     }
 }
 
-/// Microseconds a glyph for each contestant: the median of the rounds.
+/// Microseconds a glyph for each candidate: the median of the rounds.
 pub(crate) fn medians(
-    contestants: &mut [Contestant<'_>],
+    candidates: &mut [Candidate<'_>],
     ppem: u16,
     gids: &[u16],
     rounds: u32,
 ) -> Result<Vec<f64>, Box<dyn Error>> {
-    let count = contestants.len();
+    let count = candidates.len();
     let mut times = vec![Vec::new(); count];
     for round in 0..rounds as usize {
         for place in 0..count {
-            // Each round starts with another one, and every second round goes backwards, so that nobody always
-            // follows the same contestant.
+            // Each round starts with another one, and every second round goes backwards, so that no
+            // candidate always follows the same one.
             let place = if round % 2 == 0 { place } else { count - 1 - place };
-            let who = (place + round / 2) % count;
-            times[who].push(contestants[who].turn(ppem, gids)?);
+            let index = (place + round / 2) % count;
+            times[index].push(candidates[index].turn(ppem, gids)?);
         }
     }
     Ok(times.into_iter().map(median).collect())

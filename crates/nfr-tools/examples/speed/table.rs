@@ -1,11 +1,11 @@
-//! What is printed.
+//! The tables and the JSON.
 
 use std::fmt::Write;
 use std::path::Path;
 
-use super::round::Contestant;
+use super::round::Candidate;
 
-/// What is compared with what: ours, and those whose time ours is divided by.
+/// Caption, our entry, and the entries whose time ours is divided by.
 const TABLES: [(&str, &str, &[&str]); 4] = [
     ("at a size drawn before", "nfr", &["skrifa_zeno", "swash", "freetype", "fontdue"]),
     ("the first glyph at a size", "nfr_cold", &["skrifa_cold", "skrifa_reconfigured", "freetype_cold"]),
@@ -24,9 +24,10 @@ pub(crate) fn title(neural: &Path, glyphs: usize, rounds: u32) -> String {
     )
 }
 
-/// One line of JSON: the size, and each contestant's microseconds a glyph, to the nanosecond.
-pub(crate) fn json(ppem: u16, contestants: &[Contestant<'_>], times: &[f64]) -> String {
-    let times = contestants.iter().zip(times).map(|(who, time)| format!(",\"{}\":{time:.3}", who.name()));
+/// One line of JSON: the size, and each candidate's microseconds a glyph, to the nanosecond.
+pub(crate) fn json(ppem: u16, candidates: &[Candidate<'_>], times: &[f64]) -> String {
+    let times =
+        candidates.iter().zip(times).map(|(candidate, time)| format!(",\"{}\":{time:.3}", candidate.name()));
     format!("{{\"ppem\":{ppem}{}}}", times.collect::<String>())
 }
 

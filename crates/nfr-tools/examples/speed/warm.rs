@@ -23,7 +23,7 @@ use skrifa::{HintOptions, ScalerFont, ScalerSource};
 use swash::scale::{Render, ScaleContext, Source, image::Image};
 
 use super::buffer::{Buffer, Coverage};
-use super::round::Contestant;
+use super::round::Candidate;
 use super::skrifa_zeno::{SkrifaZeno, hint_options, hinted, outlines};
 
 /// A renderer that keeps what it can from one glyph to the next.
@@ -35,27 +35,27 @@ trait Renderer {
     fn draw(&mut self, gids: &[u16], show: impl FnMut(Coverage<'_>)) -> Result<(), Box<dyn Error>>;
 }
 
-/// Those that draw at a size that they have drawn before.
-pub(crate) fn contestants<'a>(
+/// The candidates that draw at a size that they have drawn before.
+pub(crate) fn candidates<'a>(
     pair: &'a FontPair<'a>,
     original: &'a [u8],
-) -> Result<Vec<Contestant<'a>>, Box<dyn Error>> {
+) -> Result<Vec<Candidate<'a>>, Box<dyn Error>> {
     let target = pair.font().target();
     Ok(vec![
-        contestant(
+        candidate(
             "nfr",
             Nfr { rasterizer: Rasterizer::new(pair.font()), ppem: 0.0, buffer: Buffer::default() },
         ),
-        contestant("skrifa_zeno", Skrifa::new(pair)?),
-        contestant("swash", Swash::new(original)?),
-        contestant("freetype", FreeType::new(original, target)?),
-        contestant("fontdue", Fontdue::new(original)?),
+        candidate("skrifa_zeno", Skrifa::new(pair)?),
+        candidate("swash", Swash::new(original)?),
+        candidate("freetype", FreeType::new(original, target)?),
+        candidate("fontdue", Fontdue::new(original)?),
     ])
 }
 
-fn contestant<'a>(name: &'static str, mut renderer: impl Renderer + 'a) -> Contestant<'a> {
+fn candidate<'a>(name: &'static str, mut renderer: impl Renderer + 'a) -> Candidate<'a> {
     let mut last = None;
-    Contestant::new(name, move |ppem, gids| {
+    Candidate::new(name, move |ppem, gids| {
         if last != Some(ppem) {
             renderer.set_size(ppem, gids)?;
             check_ink(&mut renderer, gids)?;
@@ -69,7 +69,7 @@ fn contestant<'a>(name: &'static str, mut renderer: impl Renderer + 'a) -> Conte
     })
 }
 
-/// Whoever draws nothing has no place here.
+/// Refuses a renderer whose bitmaps are mostly empty.
 fn check_ink(renderer: &mut impl Renderer, gids: &[u16]) -> Result<(), Box<dyn Error>> {
     let mut inked = 0;
     renderer.draw(gids, |coverage| inked += usize::from(coverage.has_ink()))?;
@@ -154,7 +154,7 @@ impl Renderer for Swash<'_> {
         let mut scaler = self.context.builder(self.font).size(self.ppem).hint(true).build();
         let render = Render::new(&[Source::Outline]);
         for &gid in gids {
-            // It draws on what is there.
+            // swash blends into the image's old contents.
             self.image.clear();
             if !render.render_into(&mut scaler, gid, &mut self.image) {
                 return Err(format!("glyph {gid} cannot be drawn").into());

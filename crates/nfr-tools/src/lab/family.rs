@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::bench::{BenchArgs, SET, open_family};
+use super::options::{ExperimentArgs, SET, open_family};
 use crate::failure::Failure;
-use nfr_lab::bench::Bench;
-use nfr_lab::family::{Member, weight_of};
-use nfr_lab::interpolation::{Aim, Interpolation, interpolate};
+use nfr_lab::experiment::Experiment;
+use nfr_lab::family::{FamilyMember, weight_of};
+use nfr_lab::interpolation::{Interpolation, InterpolationTarget, interpolate};
 use nfr_lab::output;
 
 /// Trains one network for several weights of a family and draws a weight between them
@@ -43,14 +43,15 @@ struct FamilyArgs {
     #[arg(long, value_name = "TEXT", default_value = SET, hide_default_value = true, allow_hyphen_values = true)]
     set: String,
     #[command(flatten)]
-    bench: BenchArgs,
+    experiment: ExperimentArgs,
 }
 
 pub(super) fn weights(args: &WeightsArgs) -> Result<(), Failure> {
     let paths: Vec<&Path> = args.fonts.iter().chain([&args.between]).map(PathBuf::as_path).collect();
-    let mut subjects = open_family(&args.family.bench, &paths, &args.family.set)?;
-    let Some(between) = subjects.pop() else { return Err(Failure::usage("no fonts are given")) };
-    let members = subjects.iter().map(|subject| Ok(Member { subject, weight: weight_of(&subject.data)? }));
+    let mut datasets = open_family(&args.family.experiment, &paths, &args.family.set)?;
+    let Some(between) = datasets.pop() else { return Err(Failure::usage("no fonts are given")) };
+    let members =
+        datasets.iter().map(|dataset| Ok(FamilyMember { dataset, weight: weight_of(&dataset.data)? }));
     let members = members.collect::<Result<Vec<_>, Failure>>()?;
     let at = weight_of(&between.data)?;
     let (first, last) = (members[0].weight, members[members.len() - 1].weight);
@@ -63,43 +64,53 @@ pub(super) fn weights(args: &WeightsArgs) -> Result<(), Failure> {
             last * 1000.0
         )));
     }
-    let aim = Aim { name: &between.name, share: (at - first) / (last - first), real: Some(&between) };
-    run(&args.family, "weights", &members, aim)
+    let target = InterpolationTarget {
+        name: &between.name,
+        share: (at - first) / (last - first),
+        real: Some(&between),
+    };
+    run(&args.family, "weights", &members, target)
 }
 
 pub(super) fn styles(args: &StylesArgs) -> Result<(), Failure> {
     let paths: Vec<&Path> = args.fonts.iter().map(PathBuf::as_path).collect();
-    let subjects = open_family(&args.family.bench, &paths, &args.family.set)?;
+    let datasets = open_family(&args.family.experiment, &paths, &args.family.set)?;
     // As in the paper's code: evenly from −1 to 1.
-    let last = (subjects.len() - 1) as f64;
-    let member = |(k, subject)| Member { subject, weight: 2.0 * k as f64 / last - 1.0 };
-    let members: Vec<Member<'_>> = subjects.iter().enumerate().map(member).collect();
-    run(&args.family, "styles", &members, Aim { name: "half-way", share: 0.5, real: None })
+    let last = (datasets.len() - 1) as f64;
+    let member = |(k, dataset)| FamilyMember { dataset, weight: 2.0 * k as f64 / last - 1.0 };
+    let members: Vec<FamilyMember<'_>> = datasets.iter().enumerate().map(member).collect();
+    run(&args.family, "styles", &members, InterpolationTarget { name: "half-way", share: 0.5, real: None })
 }
 
-fn run(args: &FamilyArgs, experiment: &str, members: &[Member<'_>], aim: Aim<'_>) -> Result<(), Failure> {
+fn run(
+    args: &FamilyArgs,
+    experiment: &str,
+    members: &[FamilyMember<'_>],
+    target: InterpolationTarget<'_>,
+) -> Result<(), Failure> {
     let text: Vec<char> = args.text.chars().collect();
     if text.is_empty() {
         return Err(Failure::usage("no characters are given; name some with --text"));
     }
-    args.bench.with(|bench| {
-        let found = bench.each(&text, |glyph| {
-            let found = interpolate(bench, experiment, members, aim, *glyph)?;
-            output::interpolation(bench, experiment, &found)?;
+    let labels = members[0].dataset.label_font()?;
+    args.experiment.with(|context| {
+        let found = context.each(&text, |glyph| {
+            let found = interpolate(context, experiment, members, target, *glyph)?;
+            output::interpolation(context, &labels, experiment, &found)?;
             Ok(found)
         })?;
-        output::settings(bench)?;
-        Ok(io::stdout().write_all(table(bench, &found).as_bytes())?)
+        output::settings(context)?;
+        Ok(io::stdout().write_all(table(context, &found).as_bytes())?)
     })
 }
 
-fn table(bench: &Bench<'_>, found: &[Interpolation]) -> String {
-    let mut text = format!("{}\n", bench.settings.label());
+fn table(context: &Experiment<'_>, found: &[Interpolation]) -> String {
+    let mut text = format!("{}\n", context.settings.label());
     for one in found {
-        for drawing in one.ends.iter().chain(&one.between) {
-            let mse = drawing.mse().map_or("no truth".into(), |mse| format!("mse {mse:.3e}"));
+        for rendering in one.ends.iter().chain(&one.between) {
+            let mse = rendering.mse().map_or("no truth".into(), |mse| format!("mse {mse:.3e}"));
             // A string takes everything that is written to it.
-            let _ = writeln!(text, "{:?}  {:24}  {:22}  {mse}", one.glyph, drawing.of, drawing.name);
+            let _ = writeln!(text, "{:?}  {:24}  {:22}  {mse}", one.glyph, rendering.of, rendering.name);
         }
     }
     text

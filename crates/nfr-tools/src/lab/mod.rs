@@ -1,7 +1,7 @@
 //! `nfr lab`: the models and experiments of the paper "Neural Font Rendering".
 
-mod bench;
 mod family;
+mod options;
 mod report;
 mod store;
 mod train;

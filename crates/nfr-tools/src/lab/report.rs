@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::bench::{BenchArgs, SET, open_family, open_subject};
+use super::options::{ExperimentArgs, SET, open_dataset, open_family};
 use crate::failure::Failure;
-use nfr_lab::bench::{SIDES, Subject};
-use nfr_lab::family::{Member, weight_of};
-use nfr_lab::report::{Part, write};
-use nfr_lab::study::Plan;
+use nfr_lab::dataset::{Dataset, SIDES};
+use nfr_lab::family::{FamilyMember, weight_of};
+use nfr_lab::report::{ReportContext, write};
+use nfr_lab::study::StudyPlan;
 
 /// Runs every experiment of the paper's evaluation and writes a page with its charts, pictures and tables
 ///
@@ -25,7 +25,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "TEXT", default_value = "lagm")]
     part: String,
     #[command(flatten)]
-    bench: BenchArgs,
+    experiment: ExperimentArgs,
 }
 
 const FONTS: [&str; 3] = ["LiberationSerif-Regular.ttf", "LiberationSans-Regular.ttf", "DejaVuSans.ttf"];
@@ -33,39 +33,42 @@ const WEIGHTS: [&str; 3] = ["Roboto_500Medium.ttf", "Roboto_600SemiBold.ttf", "R
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let path = |name: &str| args.fonts.join(name);
-    let fonts = FONTS.iter().map(|name| open_subject(&args.bench, &path(name), SET));
-    let fonts = fonts.collect::<Result<Vec<Subject>, Failure>>()?;
+    let fonts = FONTS.iter().map(|name| open_dataset(&args.experiment, &path(name), SET));
+    let fonts = fonts.collect::<Result<Vec<Dataset>, Failure>>()?;
     let data = crate::files::read(&path(FONTS[0]))?;
-    let all_sizes = Subject::open(path(FONTS[0]), data, SET, &SIDES.collect::<Vec<_>>())?;
+    let all_sizes = Dataset::open(path(FONTS[0]), data, SET, &SIDES.collect::<Vec<_>>())?;
     let [medium, between, bold] = open_three(args, &WEIGHTS.map(path))?;
-    let styles = open_family(&args.bench, &[&path(FONTS[0]), &path(FONTS[1])], SET)?;
+    let styles = open_family(&args.experiment, &[&path(FONTS[0]), &path(FONTS[1])], SET)?;
     let few = |count: usize| args.part.chars().skip(1).take(count).collect::<String>();
-    let plan = Plan {
+    let plan = StudyPlan {
         fonts: &fonts,
         all_sizes: &all_sizes,
         glyphs: &args.text,
         ablated: &args.part,
         stored: &few(1),
         weights: [
-            Member { subject: &medium, weight: weight_of(&medium.data)? },
-            Member { subject: &bold, weight: weight_of(&bold.data)? },
+            FamilyMember { dataset: &medium, weight: weight_of(&medium.data)? },
+            FamilyMember { dataset: &bold, weight: weight_of(&bold.data)? },
         ],
         between: &between,
         weighted: &few(2),
-        styles: [Member { subject: &styles[0], weight: -1.0 }, Member { subject: &styles[1], weight: 1.0 }],
+        styles: [
+            FamilyMember { dataset: &styles[0], weight: -1.0 },
+            FamilyMember { dataset: &styles[1], weight: 1.0 },
+        ],
         styled: &few(1),
     };
-    args.bench.with(|bench| {
-        let findings = plan.run(bench)?;
-        let place = args.bench.out().join("report");
-        write(&place, Part { bench, plan: &plan, findings: &findings })?;
-        writeln!(io::stdout(), "{}\n{}", bench.settings.label(), place.join("index.html").display())?;
+    args.experiment.with(|context| {
+        let results = plan.run(context)?;
+        let directory = args.experiment.out().join("report");
+        write(&directory, ReportContext { experiment: context, plan: &plan, results: &results })?;
+        writeln!(io::stdout(), "{}\n{}", context.settings.label(), directory.join("index.html").display())?;
         Ok(())
     })
 }
 
-fn open_three(args: &Args, paths: &[PathBuf; 3]) -> Result<[Subject; 3], Failure> {
+fn open_three(args: &Args, paths: &[PathBuf; 3]) -> Result<[Dataset; 3], Failure> {
     let paths = paths.each_ref().map(PathBuf::as_path);
-    let subjects = open_family(&args.bench, &paths as &[&Path], SET)?;
-    subjects.try_into().map_err(|_| Failure::failed("three weights are needed"))
+    let datasets = open_family(&args.experiment, &paths as &[&Path], SET)?;
+    datasets.try_into().map_err(|_| Failure::failed("three weights are needed"))
 }

@@ -3,16 +3,16 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::bench::BenchArgs;
-use super::train::{GlyphArgs, open};
+use super::options::{ExperimentArgs, GlyphArgs, open_glyphs};
 use crate::failure::Failure;
 use crate::files::Output;
-use nfr::internals::model::network::NetworkWeights;
-use nfr::internals::table::Precision;
+use nfr::internals::network::{NetworkWeights, Precision};
+use nfr_lab::dataset::CharGlyph;
+use nfr_lab::evaluation::measure;
+use nfr_lab::memorisation::implicit;
 use nfr_lab::output;
-use nfr_lab::single::implicit;
-use nfr_lab::stored::{drawn, font, weights};
-use nfr_lab::{bench::Glyph, error::Summary, single::measure};
+use nfr_lab::statistics::Summary;
+use nfr_lab::stored_network::{network_weights, render_stored, stored_font};
 
 /// Trains implicit networks, or takes trained ones, and stores them in a font that the library draws
 #[derive(Debug, clap::Args)]
@@ -25,7 +25,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value = "16", value_parser = precision)]
     bits: Precision,
     #[command(flatten)]
-    bench: BenchArgs,
+    experiment: ExperimentArgs,
 }
 
 fn precision(bits: &str) -> Result<Precision, String> {
@@ -38,24 +38,25 @@ fn precision(bits: &str) -> Result<Precision, String> {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let output = Output::new(&args.output)?;
-    let (subject, chosen) = open(&args.glyphs, &args.bench)?;
-    args.bench.with(|bench| {
-        let trained = bench.each(&chosen, |glyph| {
-            let (outcome, network) = implicit(bench, &subject, *glyph, &[])?;
-            output::outcome(bench, &outcome)?;
-            Ok((outcome, weights(&network, bench.settings.implicit, &subject, *glyph)?))
+    let (dataset, chosen) = open_glyphs(&args.glyphs, &args.experiment)?;
+    let labels = dataset.label_font()?;
+    args.experiment.with(|context| {
+        let trained = context.each(&chosen, |glyph| {
+            let (evaluation, network) = implicit(context, &dataset, *glyph, &[])?;
+            output::evaluation(context, &labels, &evaluation)?;
+            Ok((evaluation, network_weights(&network, context.settings.implicit, &dataset, *glyph)?))
         })?;
-        let networks: Vec<(Glyph, NetworkWeights)> =
+        let networks: Vec<(CharGlyph, NetworkWeights)> =
             chosen.iter().copied().zip(trained.iter().map(|(_, weights)| weights.clone())).collect();
-        let file = font(&subject, &networks, args.bits, bench.settings.seed)?;
+        let file = stored_font(&dataset, &networks, args.bits, context.settings.seed)?;
         output.write(&file)?;
         let mut out = io::stdout().lock();
-        writeln!(out, "{}", bench.settings.label())?;
-        for (glyph, (outcome, _)) in chosen.iter().zip(&trained) {
-            let (squares, bytes) = drawn(&file, &subject, *glyph)?;
-            let rows = measure("stored", &subject, glyph.0, &outcome.truth, &squares)?;
+        writeln!(out, "{}", context.settings.label())?;
+        for (glyph, (evaluation, _)) in chosen.iter().zip(&trained) {
+            let (squares, bytes) = render_stored(&file, &dataset, *glyph)?;
+            let rows = measure("stored", &dataset, glyph.0, &evaluation.truth, &squares)?;
             let mse = Summary::of(rows.iter().map(|row| row.mse)).map_or(0.0, |summary| summary.mean);
-            let (before, bits) = (outcome.mse(), args.bits.bits());
+            let (before, bits) = (evaluation.mse(), args.bits.bits());
             writeln!(
                 out,
                 "{:?}  {bits} bits  {bytes} bytes  mse {mse:.3e} ({before:.3e} in training, with what it draws beside the glyph)",

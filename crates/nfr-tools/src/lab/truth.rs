@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::bench::SET;
+use super::options::SET;
 use crate::failure::Failure;
 use crate::files::read;
 use nfr_convert::open::open;
-use nfr_lab::bench::{SIDES, Subject};
+use nfr_lab::dataset::{Dataset, SIDES};
 use nfr_lab::truth::{Truth, store};
 
 /// Writes the ground truth: for every size of a square box the hinted glyphs, as large as all of them fit
@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let data = read(&args.font)?;
     let at = |error: nfr_convert::Error| Failure::from(error).at(args.font.display());
     let font = open(&data, 0).map_err(at)?;
-    let glyphs = Subject::glyphs_of(&font, &args.set).map_err(at)?;
+    let glyphs = Dataset::glyphs_of(&font, &args.set).map_err(at)?;
     let gids: Vec<u16> = glyphs.iter().map(|(_, gid)| *gid).collect();
     let truth = Truth::new(&font, &gids, args.first..=args.last).map_err(at)?;
     for warning in &truth.warnings {
@@ -49,7 +49,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         std::fs::create_dir_all(parent)
             .map_err(|e| Failure::failed(format!("cannot make the directory {} ({e})", parent.display())))?;
     }
-    store(&truth, &Subject::stem(&args.font), &glyphs, &args.out)?;
+    store(&truth, &Dataset::stem(&args.font), &glyphs, &args.out)?;
     let mut out = io::stdout().lock();
     writeln!(out, "side  points  dpi  ppem")?;
     for size in &truth.sizes {

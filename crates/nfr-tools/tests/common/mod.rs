@@ -4,66 +4,67 @@
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use std::path::PathBuf;
-use std::process::{Command, Output};
 
+use assert_cmd::assert::Assert;
+use assert_cmd::cargo::cargo_bin_cmd;
 use read_fonts::FontRef;
 use read_fonts::types::Tag;
 use write_fonts::FontBuilder;
 
+/// The directory of the fonts that the tests use.
+pub const FONTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts");
 pub const SANS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/LiberationSans-Regular.ttf");
 
-/// What a tool printed and how it ended.
+/// A finished tool: its output and exit code.
 pub struct Run {
     pub code: i32,
     pub stdout: String,
     pub stderr: String,
+    assert: Assert,
 }
 
 pub fn nfr(args: &[&str]) -> Run {
-    run(env!("CARGO_BIN_EXE_nfr"), args)
+    Run::new(cargo_bin_cmd!("nfr").args(args).assert())
 }
 
 pub fn nfr_convert(args: &[&str]) -> Run {
-    run(env!("CARGO_BIN_EXE_nfr-convert"), args)
-}
-
-fn run(program: &str, args: &[&str]) -> Run {
-    let Output { status, stdout, stderr } = Command::new(program).args(args).output().unwrap();
-    Run {
-        code: status.code().unwrap(),
-        stdout: String::from_utf8(stdout).unwrap(),
-        stderr: String::from_utf8(stderr).unwrap(),
-    }
+    Run::new(cargo_bin_cmd!("nfr-convert").args(args).assert())
 }
 
 impl Run {
-    /// Done: exit code 0 and no error.
+    fn new(assert: Assert) -> Self {
+        let output = assert.get_output();
+        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+        let (code, stdout, stderr) =
+            (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr));
+        Self { code, stdout, stderr, assert }
+    }
+
+    /// Asserts exit code 0 and no error.
     #[track_caller]
-    pub fn succeeds(self) -> Self {
-        assert_eq!(self.code, 0, "{}", self.stderr);
+    pub fn succeeds(mut self) -> Self {
+        self.assert = self.assert.success();
         assert!(!self.stderr.contains("error"), "{}", self.stderr);
         self
     }
 
-    /// Failed: exit code 1, nothing on stdout, and one line on stderr with these parts.
+    /// Asserts exit code 1, nothing on stdout, and one line on stderr with these parts.
     #[track_caller]
-    pub fn fails_with(self, parts: &[&str]) -> Self {
-        assert_eq!(self.code, 1, "{}", self.stderr);
-        assert_eq!(self.stdout, "");
+    pub fn fails_with(mut self, parts: &[&str]) -> Self {
+        self.assert = self.assert.code(1).stdout("");
         assert_eq!(self.stderr.lines().count(), 1, "{}", self.stderr);
-        self.says(parts)
+        self.prints_error(parts)
     }
 
-    /// Wrong usage: exit code 2, nothing on stdout, and an error with these parts.
+    /// Asserts exit code 2, nothing on stdout, and an error with these parts.
     #[track_caller]
-    pub fn rejects_usage(self, parts: &[&str]) -> Self {
-        assert_eq!(self.code, 2, "{}", self.stderr);
-        assert_eq!(self.stdout, "");
-        self.says(parts)
+    pub fn rejects_usage(mut self, parts: &[&str]) -> Self {
+        self.assert = self.assert.code(2).stdout("");
+        self.prints_error(parts)
     }
 
     #[track_caller]
-    fn says(self, parts: &[&str]) -> Self {
+    fn prints_error(self, parts: &[&str]) -> Self {
         assert!(self.stderr.starts_with("error: "), "{}", self.stderr);
         for part in parts {
             assert!(self.stderr.contains(part), "{part:?} is not in {}", self.stderr);
@@ -106,7 +107,7 @@ impl Directory {
 
 /// The bytes of a font in `fonts/`.
 pub fn font(name: &str) -> Vec<u8> {
-    std::fs::read(format!("{}/../../fonts/{name}.ttf", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    std::fs::read(format!("{FONTS}/{name}.ttf")).unwrap()
 }
 
 pub fn sans() -> Vec<u8> {

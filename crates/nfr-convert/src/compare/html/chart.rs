@@ -1,6 +1,6 @@
-//! A line chart as inline SVG.
+//! A line chart as inline SVG, whose lines take their colours from the page's style sheet.
 
-use std::fmt::Write;
+use maud::{Markup, html};
 
 /// The drawing's size and the room for its axes, in CSS pixels.
 const WIDTH: f64 = 720.0;
@@ -19,47 +19,36 @@ pub(super) struct Series<'s> {
 }
 
 /// Draws the series over one x axis; y starts at 0.
-pub(super) fn line_chart(series: &[Series<'_>], x_label: &str) -> String {
+pub(super) fn line_chart(series: &[Series<'_>], x_label: &str) -> Markup {
     let points = || series.iter().flat_map(|line| &line.points);
     let (x_min, x_max) =
         points().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p.0), hi.max(p.0)));
     let y_max = points().fold(0.0, |max: f64, p| max.max(p.1));
     // One size, or no error at all, still needs an axis of some length.
     let (x_span, y_top) = ((x_max - x_min).max(1.0), if y_max > 0.0 { y_max * 1.05 } else { 1.0 });
-    let x = |value: f64| LEFT + (value - x_min) / x_span * (WIDTH - LEFT - RIGHT);
-    let y = |value: f64| HEIGHT - BOTTOM - value / y_top * (HEIGHT - TOP - BOTTOM);
-
-    let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\">\n");
-    for value in ticks(0.0, y_top) {
-        let (y, right) = (y(value), WIDTH - RIGHT);
-        let _ =
-            writeln!(svg, "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{right}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>");
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{value:.4}</text>",
-            LEFT - 6.0,
-            y + 4.0
-        );
-    }
-    for value in ticks(x_min, x_min + x_span).into_iter().filter(|v| v.fract() == 0.0) {
-        let y = HEIGHT - BOTTOM + 14.0;
-        let _ = writeln!(svg, "<text x=\"{:.1}\" y=\"{y}\" text-anchor=\"middle\">{value}</text>", x(value));
-    }
-    let _ = writeln!(
-        svg,
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{x_label}</text>",
-        (LEFT + WIDTH - RIGHT) / 2.0,
-        HEIGHT - 4.0
-    );
-    for line in series {
-        let path: Vec<_> = line.points.iter().map(|p| format!("{:.1},{:.1}", x(p.0), y(p.1))).collect();
-        let _ = writeln!(svg, "<polyline class=\"{}\" points=\"{}\"/>", line.class, path.join(" "));
-        for point in &path {
-            let (x, y) = point.split_once(',').unwrap_or_default();
-            let _ = writeln!(svg, "<circle class=\"{}\" cx=\"{x}\" cy=\"{y}\" r=\"2\"/>", line.class);
+    let x = |value: f64| format!("{:.1}", LEFT + (value - x_min) / x_span * (WIDTH - LEFT - RIGHT));
+    let y = |value: f64, below: f64| {
+        format!("{:.1}", HEIGHT - BOTTOM - value / y_top * (HEIGHT - TOP - BOTTOM) + below)
+    };
+    html! {
+        svg viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="img" {
+            @for value in ticks(0.0, y_top) {
+                line.grid x1=(LEFT) x2=(WIDTH - RIGHT) y1=(y(value, 0.0)) y2=(y(value, 0.0)) {}
+                text x=(LEFT - 6.0) y=(y(value, 4.0)) text-anchor="end" { (format!("{value:.4}")) }
+            }
+            @for value in ticks(x_min, x_min + x_span).into_iter().filter(|value| value.fract() == 0.0) {
+                text x=(x(value)) y=(HEIGHT - BOTTOM + 14.0) text-anchor="middle" { (value) }
+            }
+            text x=((LEFT + WIDTH - RIGHT) / 2.0) y=(HEIGHT - 4.0) text-anchor="middle" { (x_label) }
+            @for line in series {
+                polyline class=(line.class)
+                    points=(line.points.iter().map(|p| x(p.0) + "," + &y(p.1, 0.0) + " ").collect::<String>()) {}
+                @for point in &line.points {
+                    circle class=(line.class) cx=(x(point.0)) cy=(y(point.1, 0.0)) r="2" {}
+                }
+            }
         }
     }
-    svg + "</svg>\n"
 }
 
 /// Multiples of 1, 2 or 5 times a power of ten from `from` to `to`.
@@ -83,7 +72,7 @@ mod tests {
 
     #[test]
     fn one_point_without_error_still_draws() {
-        let svg = line_chart(&[Series { class: "neural", points: vec![(12.0, 0.0)] }], "ppem");
+        let svg = line_chart(&[Series { class: "neural", points: vec![(12.0, 0.0)] }], "ppem").into_string();
         assert!(svg.contains("polyline") && !svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     }
 }

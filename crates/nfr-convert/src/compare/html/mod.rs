@@ -2,14 +2,15 @@
 
 mod chart;
 
-use std::fmt::Write;
-
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use image::RgbImage;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::diff::Sources;
-use super::picture::{Canvas, DIFFERENCE_GAIN, coverage, difference, enclosing, text_line};
-use super::report::{Compared, OfGlyph, Report, glyphs};
+use super::picture::{DIFFERENCE_GAIN, coverage, difference, enclosing, png, text_line};
+use super::report::{ComparedErrors, GlyphErrors, Report, glyph_count_text};
+use super::source::BitmapSource;
 use crate::error::Error;
 use chart::{Series, line_chart};
 
@@ -22,7 +23,7 @@ const MAX_ZOOM: u32 = 12;
 const TEXT_ZOOM: u32 = 2;
 
 /// The text that the page shows.
-pub struct Sample<'s> {
+pub struct SampleText<'s> {
     /// Its glyphs.
     pub gids: &'s [u16],
     /// The sizes to show it at, in pixels per em.
@@ -36,56 +37,62 @@ pub struct Sample<'s> {
 /// # Errors
 ///
 /// As the sources', and `LimitExceeded` for pictures that would be too large.
-pub fn page(report: &Report, sources: Sources<'_>, sample: &Sample<'_>) -> Result<String, Error> {
-    let subject = &report.subject;
-    let title = format!("{} against {}", subject.neural, subject.original);
-    let title = escape(&title);
-    let mut html = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>\n{}</style>\n\
-         <h1>{title}</h1>\n<p>{} at {} ppem, hinted for {}; {} bytes of models, {:.1} per glyph.</p>\n",
-        include_str!("page.css"),
-        glyphs(subject.glyphs),
-        subject.ppem,
-        subject.target,
-        subject.table_bytes,
-        subject.bytes_per_glyph
-    );
-    html += &figures(report);
-    html += &by_size(report);
-    html += &worst(report, sources)?;
-    html += &text(sources, sample)?;
-    Ok(html + "</html>\n")
-}
-
-fn figures(report: &Report) -> String {
-    let mut html =
-        "<h2>Error against the hinted bitmaps</h2>\n<table>\n<tr><th>ppem<th><th>mae<th>rmse<th>max\
-                    <th>bad16<th>exact</tr>\n"
-            .to_owned();
-    let mut add = |sizes: &str, compared: &Compared| {
-        for (who, located) in [("neural", &compared.neural), ("unhinted", &compared.unhinted)] {
-            let m = &located.figures;
-            let _ = writeln!(
-                html,
-                "<tr class=\"{who}\"><td>{sizes}<td>{who}<td>{:.5}<td>{:.5}<td>{:.5}<td>{:.2} %<td>{:.2} %</tr>",
-                m.mae,
-                m.rmse,
-                m.max,
-                100.0 * m.bad16,
-                100.0 * m.exact
-            );
+pub fn page(report: &Report, sources: Sources<'_>, text: &SampleText<'_>) -> Result<String, Error> {
+    let header = &report.header;
+    let title = format!("{} against {}", header.neural, header.original);
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                title { (title) }
+                style { (PreEscaped(include_str!("page.css"))) }
+            }
+            body {
+                h1 { (title) }
+                p {
+                    (glyph_count_text(header.glyphs)) " at " (header.ppem) " ppem, hinted for " (header.target) "; "
+                    (header.table_bytes) " bytes of models, " (format!("{:.1}", header.bytes_per_glyph)) " per glyph."
+                }
+                (error_table(report))
+                (error_by_size(report))
+                (worst_glyphs(report, sources)?)
+                (text_lines(sources, text)?)
+            }
         }
     };
-    add(&report.subject.ppem, &report.totals);
-    for band in &report.bands {
-        add(&format!("{}–{}", band.first_ppem, band.last_ppem), &band.compared);
-    }
-    html + "</table>\n<p>mae, rmse and max in units of full coverage; bad16 is the share of pixels off by more than \
-            16/255.</p>\n"
+    Ok(page.into_string())
 }
 
-fn by_size(report: &Report) -> String {
-    let series = |class, mae: &dyn Fn(&Compared) -> f64| Series {
+fn error_table(report: &Report) -> Markup {
+    let all = (report.header.ppem.clone(), &report.totals);
+    let bands =
+        report.bands.iter().map(|band| (format!("{}–{}", band.first_ppem, band.last_ppem), &band.compared));
+    html! {
+        h2 { "Error against the hinted bitmaps" }
+        table {
+            tr { @for name in ["ppem", "", "mae", "rmse", "max", "bad16", "exact"] { th { (name) } } }
+            @for (sizes, compared) in std::iter::once(all).chain(bands) {
+                @for (name, errors) in [("neural", &compared.neural), ("unhinted", &compared.unhinted)] {
+                    tr class=(name) {
+                        td { (sizes) }
+                        td { (name) }
+                        @for value in [errors.figures.mae, errors.figures.rmse, errors.figures.max] {
+                            td { (format!("{value:.5}")) }
+                        }
+                        @for share in [errors.figures.bad16, errors.figures.exact] {
+                            td { (format!("{:.2} %", 100.0 * share)) }
+                        }
+                    }
+                }
+            }
+        }
+        p { "mae, rmse and max in units of full coverage; bad16 is the share of pixels off by more than 16/255." }
+    }
+}
+
+fn error_by_size(report: &Report) -> Markup {
+    let series = |class, mae: &dyn Fn(&ComparedErrors) -> f64| Series {
         class,
         points: report.by_ppem.iter().map(|s| (f64::from(s.first_ppem), mae(&s.compared))).collect(),
     };
@@ -93,75 +100,82 @@ fn by_size(report: &Report) -> String {
         series("unhinted", &|compared| compared.unhinted.figures.mae),
         series("neural", &|compared| compared.neural.figures.mae),
     ];
-    format!(
-        "<h2>Mean absolute error by size: <span class=\"neural\">neural</span>, \
-         <span class=\"unhinted\">unhinted</span></h2>\n{}",
-        line_chart(&lines, "ppem")
-    )
-}
-
-fn worst(report: &Report, sources: Sources<'_>) -> Result<String, Error> {
-    let mut html = format!(
-        "<h2>Worst glyphs, each at its worst size</h2>\n<p>The difference is that of the neural bitmap from the \
-         hinted one, {DIFFERENCE_GAIN} times as strong: red is too dark, blue too light.</p>\n<div class=\"scroll\">\
-         <table class=\"glyphs\">\n<tr><th>glyph<th>neural<th>hinted<th>unhinted<th>difference</tr>\n"
-    );
-    for glyph in report.by_glyph.iter().take(WORST_SHOWN).filter(|glyph| glyph.worst_ppem > 0) {
-        html += &worst_row(glyph, sources)?;
+    html! {
+        h2 {
+            "Mean absolute error by size: " span.neural { "neural" } ", " span.unhinted { "unhinted" }
+        }
+        (line_chart(&lines, "ppem"))
     }
-    Ok(html + "</table></div>\n")
 }
 
-fn worst_row(glyph: &OfGlyph, sources: Sources<'_>) -> Result<String, Error> {
-    let draw = |source: &dyn super::source::Source| {
-        source.at(glyph.worst_ppem).and_then(|mut at| at.bitmap(glyph.gid))
-    };
+fn worst_glyphs(report: &Report, sources: Sources<'_>) -> Result<Markup, Error> {
+    let glyphs = report.by_glyph.iter().take(WORST_SHOWN).filter(|glyph| glyph.worst_ppem > 0);
+    let rows = glyphs.map(|glyph| worst_row(glyph, sources)).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        h2 { "Worst glyphs, each at its worst size" }
+        p {
+            "The difference is that of the neural bitmap from the hinted one, " (DIFFERENCE_GAIN)
+            " times as strong: red is too dark, blue too light."
+        }
+        div.scroll {
+            table.glyphs {
+                tr { @for name in ["glyph", "neural", "hinted", "unhinted", "difference"] { th { (name) } } }
+                @for row in rows { (row) }
+            }
+        }
+    })
+}
+
+fn worst_row(glyph: &GlyphErrors, sources: Sources<'_>) -> Result<Markup, Error> {
+    let draw =
+        |source: &dyn BitmapSource| source.at(glyph.worst_ppem).and_then(|mut at| at.bitmap(glyph.gid));
     let (truth, neural, unhinted) = (draw(sources.truth)?, draw(sources.neural)?, draw(sources.unhinted)?);
     let frame = enclosing([&truth, &neural, &unhinted]);
     let zoom = (GLYPH_SIZE / frame.width.max(frame.height).max(1)).clamp(1, MAX_ZOOM);
-    let mut html = format!(
-        "<tr><td>{}<br>{} ppem<br>mae {:.4} over all sizes",
-        escape(&glyph.title()),
-        glyph.worst_ppem,
-        glyph.compared.neural.figures.mae
-    );
-    for canvas in [
+    let pictures = [
         coverage(&neural, &frame)?,
         coverage(&truth, &frame)?,
         coverage(&unhinted, &frame)?,
         difference(&truth, &neural, &frame)?,
-    ] {
-        let _ = write!(html, "<td>{}", image(&canvas, zoom)?);
-    }
-    Ok(html + "</tr>\n")
+    ];
+    Ok(html! {
+        tr {
+            td {
+                (glyph.title()) br; (glyph.worst_ppem) " ppem" br;
+                "mae " (format!("{:.4}", glyph.compared.neural.figures.mae)) " over all sizes"
+            }
+            @for picture in &pictures { td { (inline_image(picture, zoom)?) } }
+        }
+    })
 }
 
-fn text(sources: Sources<'_>, sample: &Sample<'_>) -> Result<String, Error> {
-    let mut html = "<h2>Text</h2>\n<div class=\"scroll\"><table class=\"lines\">\n".to_owned();
-    for &ppem in sample.sizes {
-        let who = [("neural", sources.neural), ("hinted", sources.truth), ("unhinted", sources.unhinted)];
-        let lines = who.map(|(_, source)| {
-            text_line(source.at(ppem)?.as_mut(), sample.gids, |gid| (sample.advance)(gid, ppem))
+fn text_lines(sources: Sources<'_>, text: &SampleText<'_>) -> Result<Markup, Error> {
+    let mut rows = Vec::new();
+    for &ppem in text.sizes {
+        let named = [("neural", sources.neural), ("hinted", sources.truth), ("unhinted", sources.unhinted)];
+        let lines = named.into_iter().map(|(_, source)| {
+            text_line(source.at(ppem)?.as_mut(), text.gids, |gid| (text.advance)(gid, ppem))
         });
-        let [neural, truth, unhinted] = lines;
-        let lines = [neural?, truth?, unhinted?];
+        let lines = lines.collect::<Result<Vec<_>, Error>>()?;
         let frame = enclosing(&lines);
-        for ((who, _), line) in who.iter().zip(&lines) {
-            let picture = image(&coverage(line, &frame)?, TEXT_ZOOM)?;
-            let _ = writeln!(html, "<tr><td>{ppem} ppem<td>{who}<td>{picture}</tr>");
+        for ((name, _), line) in named.iter().zip(&lines) {
+            rows.push((ppem, *name, inline_image(&coverage(line, &frame)?, TEXT_ZOOM)?));
         }
     }
-    Ok(html + "</table></div>\n")
+    Ok(html! {
+        h2 { "Text" }
+        div.scroll {
+            table.lines {
+                @for (ppem, name, picture) in rows {
+                    tr { td { (ppem) " ppem" } td { (name) } td { (picture) } }
+                }
+            }
+        }
+    })
 }
 
 /// A picture inside the page, enlarged by the browser.
-fn image(canvas: &Canvas, zoom: u32) -> Result<String, Error> {
-    let (width, height) = (canvas.width() * zoom, canvas.height() * zoom);
-    let png = STANDARD.encode(canvas.png()?);
-    Ok(format!("<img width=\"{width}\" height=\"{height}\" alt=\"\" src=\"data:image/png;base64,{png}\">"))
-}
-
-/// Replaces the characters that HTML gives a meaning.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+fn inline_image(picture: &RgbImage, zoom: u32) -> Result<Markup, Error> {
+    let source = format!("data:image/png;base64,{}", STANDARD.encode(png(picture)?));
+    Ok(html! { img width=(picture.width() * zoom) height=(picture.height() * zoom) alt="" src=(source); })
 }

@@ -1,29 +1,29 @@
 //! Glyphs side by side, as one bitmap.
 
-use super::canvas::enclosing;
-use crate::compare::source::SourceAt;
+use super::raster::enclosing;
+use crate::compare::source::SizedSource;
 use crate::error::Error;
 use nfr::Bitmap;
 
 /// Pixels between the glyphs of a specimen.
 const SPECIMEN_GAP: i64 = 2;
 
-/// A line of text: each glyph at the pen, rounded to whole pixels, and the pen moved by its advance in
-/// pixels. No kerning.
+/// A line of text: each glyph with its origin at the sum of the advances before it, in pixels, rounded to a whole one. No
+/// kerning.
 ///
 /// # Errors
 ///
 /// As the source's.
 pub fn text_line(
-    source: &mut dyn SourceAt,
+    source: &mut dyn SizedSource,
     gids: &[u16],
     advance: impl Fn(u16) -> f32,
 ) -> Result<Bitmap, Error> {
-    let mut pen = 0.0f64;
+    let mut x = 0.0f64;
     let mut glyphs = Vec::with_capacity(gids.len());
     for &gid in gids {
-        glyphs.push(moved(source.bitmap(gid)?, pen.round() as i64));
-        pen += f64::from(advance(gid));
+        glyphs.push(moved(source.bitmap(gid)?, x.round() as i64));
+        x += f64::from(advance(gid));
     }
     Ok(joined(&glyphs))
 }
@@ -34,23 +34,23 @@ pub fn text_line(
 ///
 /// As the source's.
 pub fn specimen(
-    source: &mut dyn SourceAt,
+    source: &mut dyn SizedSource,
     gids: &[u16],
     advance: impl Fn(u16) -> f32,
     max_width: i64,
 ) -> Result<Vec<Bitmap>, Error> {
-    let (mut lines, mut line, mut pen) = (Vec::new(), Vec::new(), 0);
+    let (mut lines, mut line, mut x) = (Vec::new(), Vec::new(), 0);
     for &gid in gids {
         let bitmap = source.bitmap(gid)?;
         let left = i64::from(bitmap.placement.left).min(0);
         let right = i64::from(bitmap.placement.left) + i64::from(bitmap.placement.width);
         let width = right.max(advance(gid).round() as i64) - left + SPECIMEN_GAP;
-        if pen + width > max_width && !line.is_empty() {
+        if x + width > max_width && !line.is_empty() {
             lines.push(joined(&line));
-            (line, pen) = (Vec::new(), 0);
+            (line, x) = (Vec::new(), 0);
         }
-        line.push(moved(bitmap, pen - left));
-        pen += width;
+        line.push(moved(bitmap, x - left));
+        x += width;
     }
     lines.push(joined(&line));
     Ok(lines)
@@ -89,7 +89,7 @@ mod tests {
     /// Every glyph is one pixel as dark as its number.
     struct Dots;
 
-    impl SourceAt for Dots {
+    impl SizedSource for Dots {
         fn bitmap(&mut self, gid: u16) -> Result<Bitmap, Error> {
             let placement = Placement { left: 0, top: 1, width: 1, height: 1 };
             Ok(Bitmap { placement, pixels: vec![gid as u8] })
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pen_advances_exactly_and_glyphs_stand_on_whole_pixels() {
+    fn advances_add_up_exactly_and_glyphs_stand_on_whole_pixels() {
         let line = text_line(&mut Dots, &[1, 2, 3], |_| 1.4).unwrap();
         assert_eq!(line.pixels, [1, 2, 0, 3]);
     }

@@ -1,0 +1,50 @@
+//! A conversion seen from outside: its progress and its result.
+
+use crate::assemble::HintBytes;
+use crate::compare::metrics::Sums;
+
+/// Callbacks of a running conversion, from several threads.
+pub trait Progress: Sync {
+    /// The number of glyphs that will be ready in the end: those selected, and the parts of them that need models.
+    fn planned(&self, glyphs: usize) {
+        let _ = glyphs;
+    }
+
+    /// One glyph is ready: its error over all sizes (mae, 0..1).
+    fn glyph_done(&self, gid: u16, mae: f64);
+
+    /// A defect of the font, and how the conversion handles it.
+    fn warn(&self, message: &str) {
+        let _ = message;
+    }
+}
+
+/// One converted glyph, for the report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GlyphReport {
+    /// The glyph.
+    pub gid: u16,
+    /// Bytes of its model in the table, or of the list of its parts.
+    pub bytes: usize,
+    /// Whether it is composed of others' models.
+    pub composed: bool,
+    /// Mean absolute error against the teacher over all sizes, 0..1.
+    pub mae: f64,
+    /// Share of pixels off by more than 16/255.
+    pub bad16: f64,
+}
+
+/// A finished conversion.
+#[derive(Debug, Clone)]
+pub struct Conversion {
+    /// The new font file.
+    pub font: Vec<u8>,
+    /// One report for each glyph of the table, in ascending order: those selected, and parts of them.
+    pub glyphs: Vec<GlyphReport>,
+    /// The sums over all selected glyphs and sizes.
+    pub sums: Sums,
+    /// The length of the `Nfrt` table.
+    pub table_bytes: usize,
+    /// The hint programs of the original, which the new font does not have.
+    pub hint_bytes: HintBytes,
+}

@@ -1,0 +1,5 @@
+//! Reading what people pass in: font files, selections of glyphs, lists of sizes.
+
+pub mod open;
+pub mod ppem;
+pub mod select;

@@ -1,0 +1,230 @@
+//! Which glyphs: by text, by code point, by number, by name. The options are pyftsubset's.
+
+mod lists;
+
+use std::collections::{BTreeSet, HashMap};
+
+use read_fonts::{FontRef, ReadError, TableProvider};
+use skrifa::font::name::GlyphNameSource;
+
+use super::open::owned;
+use crate::error::Error;
+
+pub use lists::{CodePoints, GlyphIds, GlyphNames};
+
+/// The most unknown glyph names that one message lists.
+const NAMES_LISTED: usize = 5;
+
+/// A selection of glyphs: the union of all fields.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Selection {
+    /// The characters of a text. Line breaks and a byte order mark select nothing.
+    pub text: Option<String>,
+    /// Unicode code points.
+    pub unicodes: CodePoints,
+    /// Glyph numbers.
+    pub gids: GlyphIds,
+    /// Glyph names of the 'post' table.
+    pub names: GlyphNames,
+}
+
+impl Selection {
+    /// Whether nothing is asked for by name, number or character.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The characters of the text that stand for glyphs: all but line breaks and byte order marks.
+    pub fn characters(&self) -> impl Iterator<Item = char> + '_ {
+        self.text.iter().flat_map(|text| text.chars()).filter(|c| !matches!(c, '\n' | '\r' | '\u{feff}'))
+    }
+
+    /// The glyph numbers in `font`, ascending, without repeats. An empty selection stands for `all`.
+    ///
+    /// # Errors
+    ///
+    /// `InvalidParameter`, naming the first character or glyph that the font does not have.
+    pub fn resolve(&self, font: &FontRef<'_>, all: impl IntoIterator<Item = u16>) -> Result<Vec<u16>, Error> {
+        if self.is_empty() {
+            let all: BTreeSet<u16> = all.into_iter().collect();
+            return Ok(all.into_iter().collect());
+        }
+        let mut gids = BTreeSet::new();
+        let glyph_count = glyph_count(font)?;
+        self.add_characters(font, &mut gids)?;
+        for range in &self.gids.0 {
+            if u32::from(*range.end()) >= glyph_count {
+                return Err(Error::InvalidParameter(format!(
+                    "glyph {} is not in the font, which has the glyphs 0-{}; correct --gids",
+                    (*range.start()).max(u16::try_from(glyph_count).unwrap_or(u16::MAX)),
+                    glyph_count.saturating_sub(1)
+                )));
+            }
+            gids.extend(range.clone());
+        }
+        self.add_names(font, &mut gids)?;
+        if gids.is_empty() {
+            return Err(Error::InvalidParameter(
+                "the selection is empty; give --text, --unicodes, --gids or --glyphs something to select"
+                    .into(),
+            ));
+        }
+        Ok(gids.into_iter().collect())
+    }
+
+    fn add_characters(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<(), Error> {
+        let font = owned(font)?;
+        let charmap = font.charmap();
+        let lookup = |code: u32| charmap.map_unicode(code).and_then(|gid| u16::try_from(gid.to_u32()).ok());
+        for character in self.characters() {
+            gids.insert(
+                lookup(character.into()).ok_or_else(|| missing_character(character.into(), "--text"))?,
+            );
+        }
+        for code in self.unicodes.0.iter().flat_map(Clone::clone) {
+            gids.insert(lookup(code).ok_or_else(|| missing_character(code, "--unicodes"))?);
+        }
+        Ok(())
+    }
+
+    fn add_names(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<(), Error> {
+        if self.names.0.is_empty() {
+            return Ok(());
+        }
+        let names = match font.post() {
+            Ok(post) => post.num_names(),
+            Err(ReadError::TableIsMissing(_)) => 0,
+            Err(e) => return Err(Error::Malformed(format!("table 'post' cannot be read ({e})"))),
+        };
+        if names == 0 {
+            return Err(Error::InvalidParameter(
+                "the font's 'post' table has no glyph names; select with --gids or --unicodes instead".into(),
+            ));
+        }
+        // The first glyph of a name wins, should a damaged font name two alike.
+        let mut by_name = HashMap::new();
+        for (gid, name) in glyph_names(font)? {
+            by_name.entry(name).and_modify(|first: &mut u16| *first = gid.min(*first)).or_insert(gid);
+        }
+        let missing: Vec<_> = self.names.0.iter().filter(|name| !by_name.contains_key(*name)).collect();
+        if !missing.is_empty() {
+            let listed: Vec<_> = missing.iter().take(NAMES_LISTED).map(|name| format!("'{name}'")).collect();
+            let more = missing.len().saturating_sub(NAMES_LISTED);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            return Err(Error::InvalidParameter(format!(
+                "no glyph is named {}{more} in the font's 'post' table; correct --glyphs",
+                listed.join(", ")
+            )));
+        }
+        gids.extend(self.names.0.iter().filter_map(|name| by_name.get(name)));
+        Ok(())
+    }
+}
+
+/// The number of glyphs in a font ('maxp').
+///
+/// # Errors
+///
+/// `Malformed` if 'maxp' cannot be read.
+pub fn glyph_count(font: &FontRef<'_>) -> Result<u32, Error> {
+    let maxp = font.maxp().map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e})")))?;
+    Ok(maxp.num_glyphs().into())
+}
+
+/// The names of the font's glyphs in 'post'; empty if it has none.
+///
+/// # Errors
+///
+/// `Malformed` if the font's table directory cannot be read.
+pub fn glyph_names(font: &FontRef<'_>) -> Result<HashMap<u16, String>, Error> {
+    let font = owned(font)?;
+    let named = font.glyph_names().filter(|(_, name)| name.source() != GlyphNameSource::Synthesized);
+    Ok(named
+        .filter_map(|(gid, name)| Some((u16::try_from(gid.to_u32()).ok()?, name.as_str().to_owned())))
+        .collect())
+}
+
+fn missing_character(code: u32, option: &str) -> Error {
+    let named = match char::from_u32(code) {
+        Some(c) if !c.is_control() => format!("'{c}' (U+{code:04X})"),
+        _ => format!("U+{code:04X}"),
+    };
+    Error::InvalidParameter(format!(
+        "character {named} is not in the font; leave it out of {option} or pass a font that has it"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use read_fonts::types::Tag;
+    use write_fonts::FontBuilder;
+
+    use super::*;
+
+    /// 'a' is glyph 68 of Liberation Sans and 'g' 74, as in every font with Arial's glyph order.
+    const SANS: &[u8] = include_bytes!("../../fonts/LiberationSans-Regular.ttf");
+
+    fn select(selection: &Selection) -> Result<Vec<u16>, Error> {
+        selection.resolve(&FontRef::new(SANS).unwrap(), [9, 7, 7])
+    }
+
+    #[test]
+    fn every_way_to_name_a_glyph_finds_it() {
+        let text = Selection { text: Some("a".into()), ..Default::default() };
+        let unicodes = Selection { unicodes: "U+61".parse().unwrap(), ..Default::default() };
+        let gids = Selection { gids: "68".parse().unwrap(), ..Default::default() };
+        let names = Selection { names: "a".parse().unwrap(), ..Default::default() };
+        for selection in [text, unicodes, gids, names] {
+            assert_eq!(select(&selection).unwrap(), [68]);
+        }
+    }
+
+    #[test]
+    fn the_selection_is_the_union_in_order_without_repeats() {
+        let selection = Selection {
+            text: Some("ga\na".into()),
+            unicodes: "61".parse().unwrap(),
+            gids: "3,66-68".parse().unwrap(),
+            names: "g".parse().unwrap(),
+        };
+        assert_eq!(select(&selection).unwrap(), [3, 66, 67, 68, 74]);
+    }
+
+    #[test]
+    fn no_selection_stands_for_all() {
+        assert_eq!(select(&Selection::default()).unwrap(), [7, 9]);
+    }
+
+    #[test]
+    fn an_empty_text_selects_nothing_instead_of_everything() {
+        let error = select(&Selection { text: Some("\n".into()), ..Default::default() }).unwrap_err();
+        assert!(error.to_string().contains("selection is empty"), "{error}");
+    }
+
+    #[test]
+    fn names_are_not_looked_up_in_a_post_table_that_cannot_be_read() {
+        let mut builder = FontBuilder::new();
+        builder.add_raw(Tag::new(b"post"), vec![0, 2, 0, 0]).copy_missing_tables(FontRef::new(SANS).unwrap());
+        let data = builder.build();
+        let selection = Selection { names: "a".parse().unwrap(), ..Default::default() };
+        let error = selection.resolve(&FontRef::new(&data).unwrap(), []).unwrap_err();
+        assert!(matches!(&error, Error::Malformed(text) if text.contains("'post'")), "{error}");
+    }
+
+    #[test]
+    fn a_glyph_that_is_not_there_is_named() {
+        let cases = [
+            (Selection { text: Some("a\u{4e00}".into()), ..Default::default() }, "U+4E00"),
+            (Selection { unicodes: "61,U+4E01-4E05".parse().unwrap(), ..Default::default() }, "U+4E01"),
+            (Selection { unicodes: "D800".parse().unwrap(), ..Default::default() }, "U+D800"),
+            (Selection { gids: "5-60000".parse().unwrap(), ..Default::default() }, "glyph 2620"),
+            (Selection { names: "a,nosuch".parse().unwrap(), ..Default::default() }, "'nosuch'"),
+        ];
+        for (selection, name) in cases {
+            let error = select(&selection).unwrap_err().to_string();
+            assert!(error.contains(name), "{error} does not name {name}");
+        }
+    }
+}

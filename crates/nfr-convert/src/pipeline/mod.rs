@@ -1,0 +1,145 @@
+//! The whole conversion: from a hinted font file to one with models.
+
+mod glyphs;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use read_fonts::FontRef;
+
+use crate::assemble::{assemble, hint_bytes, outline_hash};
+use crate::compare::metrics::Sums;
+use crate::compose::Decomposition;
+use crate::conversion::{Conversion, GlyphReport, Progress};
+use crate::error::Error;
+use crate::input::open::{has_models, open};
+use crate::options::{CELL_UNITS_PER_EM, Options};
+use crate::partial::Partial;
+use crate::predict::Predictor;
+use crate::teacher::{Teacher, TeacherAt};
+use crate::writer::{self, GlyphModel};
+use glyphs::GlyphTrainer;
+use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
+use nfr::internals::table::{Header, Table};
+
+/// Converts a font: trains a model for each glyph and writes a font that carries them instead of hints.
+///
+/// # Errors
+///
+/// `Malformed` or `Unsupported` for a font that cannot be converted, `NoSuchGlyph` for a glyph that it does not have,
+/// `InvalidParameter` for options that make no sense.
+pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Result<Conversion, Error> {
+    resume(input, options, progress, None)
+}
+
+/// Converts a font as [`convert`] does. Trained glyphs are appended to the work file `partial`, and those that it
+/// holds already are not trained again.
+///
+/// # Errors
+///
+/// As [`convert`], and `Io` if the work file cannot be written.
+pub fn resume(
+    input: &[u8],
+    options: &Options,
+    progress: &dyn Progress,
+    partial: Option<&Partial>,
+) -> Result<Conversion, Error> {
+    options.check()?;
+    let font = open(input, options.index)?;
+    if has_models(&font) {
+        return Err(Error::Unsupported(
+            "the font already carries an 'Nfrt' table and has no hints left; convert the original font"
+                .into(),
+        ));
+    }
+    let teacher = Teacher::new(&font, options.target)?;
+    let header = header(&font, options)?;
+    let units = teacher.units_per_em();
+    let scale = header.scale(units).ok_or_else(|| {
+        Error::InvalidParameter(format!(
+            "{}–{} ppem of {units} units per em; 1–{MAX_TRAINED_PPEM} and 16–16384 are allowed",
+            header.first_ppem, header.last_ppem
+        ))
+    })?;
+    let known_ppem = options.ppem.clone().step_by(options.ppem_step.into());
+    let sizes = known_ppem.map(|ppem| teacher.at(ppem)).collect::<Result<Vec<_>, _>>()?;
+    warn_of_unhinted(&sizes, progress)?;
+    let mut glyphs = if options.compose {
+        Decomposition::find(&font, &teacher, &sizes, scale, &options.gids)?
+    } else {
+        Decomposition::without_composition(&options.gids)
+    };
+    progress.planned(glyphs.modelled.len() + glyphs.composed.len());
+    let predictor = Predictor::new(&teacher, &sizes, scale, &glyphs.modelled)?;
+    glyphs.predict_part_offsets(&predictor, scale);
+    let trainer = GlyphTrainer {
+        teacher: &teacher,
+        sizes: &sizes,
+        scale,
+        predictor: &predictor,
+        options,
+        progress,
+        partial,
+    };
+    let trained = trainer.train_all(&glyphs.modelled)?;
+    let mut measured: BTreeMap<u16, Sums> = trained.iter().map(|t| (t.gid, t.sums)).collect();
+    let models: Vec<GlyphModel> =
+        trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
+    measured.extend(trainer.measure_composed(&models, &glyphs.composed)?);
+    let (table, _) = writer::write(&header, &models, &glyphs.composed, &[], scale)?;
+    let mut sums = Sums::default();
+    for gid in &options.gids {
+        sums.merge(measured.get(gid).ok_or(Error::MissingGlyph(*gid))?);
+    }
+    let dropped = if options.drop_outlines { measured.keys().copied().collect() } else { BTreeSet::new() };
+    Ok(Conversion {
+        font: assemble(&font, &table, &dropped)?,
+        hint_bytes: hint_bytes(&font)?,
+        glyphs: reports(&Table::parse(&table)?, &measured)?,
+        sums,
+        table_bytes: table.len(),
+    })
+}
+
+fn reports(table: &Table<'_>, measured: &BTreeMap<u16, Sums>) -> Result<Vec<GlyphReport>, Error> {
+    let report = |(&gid, sums): (&u16, &Sums)| {
+        let (figures, composed) = (sums.figures(), table.is_composed(gid.into()));
+        let bytes = table.model_len(gid.into())?;
+        Ok(GlyphReport { gid, bytes, composed, mae: figures.mae, bad16: figures.bad16 })
+    };
+    measured.iter().map(report).collect()
+}
+
+/// Warns of the sizes at which the font switches its hints off. A font that does so at all of them is refused.
+fn warn_of_unhinted(sizes: &[TeacherAt], progress: &dyn Progress) -> Result<(), Error> {
+    let off: Vec<String> =
+        sizes.iter().filter(|at| !at.is_hinted()).map(|at| at.ppem().to_string()).collect();
+    if off.len() == sizes.len() {
+        return Err(Error::Unsupported(
+            "the font's 'prep' program switches hinting off at all of these sizes; choose others with --ppem"
+                .into(),
+        ));
+    }
+    if !off.is_empty() {
+        progress.warn(&format!(
+            "the font's 'prep' program switches hinting off at {} ppem; the unhinted outlines are learnt there",
+            off.join(", ")
+        ));
+    }
+    Ok(())
+}
+
+fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
+    let (first, last) = options.ppem.clone().into_inner();
+    Ok(Header {
+        target: options.target,
+        first_ppem: first,
+        last_ppem: last - (last - first) % options.ppem_step,
+        outline_hash: outline_hash(font)?,
+        outlines_dropped: options.drop_outlines,
+        seed: options.seed,
+        steps: options.schedule.steps as u16,
+        knots: options.capacity.knots as u8,
+        rank: options.capacity.rank as u8,
+        cell: (options.capacity.cell * CELL_UNITS_PER_EM).round() as u16,
+    })
+}

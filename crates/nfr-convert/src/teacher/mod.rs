@@ -1,0 +1,213 @@
+//! The teacher: skrifa's hinted and unhinted outlines, filled with exact area coverage by zeno.
+//!
+//! skrifa falls back silently in several places. Here the interpreter is requested explicitly, and whatever
+//! would make it do something else than run the font's own programs at the requested size is an error.
+
+mod outline;
+pub(crate) mod unhinted;
+
+use std::sync::OnceLock;
+
+use read_fonts::{FontRef, TableProvider};
+use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, ScalerFont, ScalerSource};
+
+use crate::error::Error;
+use crate::input::ppem::MAX_TEACHER_PPEM;
+use nfr::Target;
+use unhinted::{draw, glyf_of, undrawable};
+
+pub use outline::Outline;
+pub(crate) use unhinted::UnhintedOutlines;
+
+/// A hinted font as ground truth. It keeps a copy of the font, and may be used from several threads.
+pub struct Teacher {
+    unhinted: UnhintedOutlines,
+    raster: RasterTarget,
+}
+
+impl Teacher {
+    /// Takes the font as a teacher.
+    ///
+    /// # Errors
+    ///
+    /// `Unsupported` for a variable font, a font without TrueType outlines, or one without hint programs; `Malformed`
+    /// if its size of an em is not one that OpenType allows.
+    pub fn new(font: &FontRef<'_>, target: Target) -> Result<Self, Error> {
+        let unhinted = UnhintedOutlines::new(font)?;
+        match unhinted.table() {
+            Some(OutlineSource::Glyf) => {}
+            Some(_) => {
+                return Err(Error::Unsupported(
+                    "the outlines are PostScript (CFF), not TrueType; convert them to a hinted TrueType font first"
+                        .into(),
+                ));
+            }
+            None => {
+                return Err(Error::Unsupported(
+                    "the font has no 'glyf' outlines; pass a TrueType font".into(),
+                ));
+            }
+        }
+        if font.fvar().is_ok() {
+            return Err(Error::Unsupported(
+                "the font is variable; make a static instance first (fonttools varLib.instancer)".into(),
+            ));
+        }
+        if font.fpgm().is_err() && font.prep().is_err() {
+            return Err(Error::Unsupported(
+                "the font has no hint programs ('fpgm', 'prep'), so there is nothing to learn; pass a hinted font"
+                    .into(),
+            ));
+        }
+        Ok(Self { unhinted, raster: raster_target(target)? })
+    }
+
+    /// Font units in an em.
+    pub fn units_per_em(&self) -> u16 {
+        self.unhinted.units_per_em()
+    }
+
+    /// Sets the interpreter up for one size: runs `fpgm` and `prep`. If the font switches hinting off at this
+    /// size, [`TeacherAt::is_hinted`] is false, and its outlines are unhinted, as in other renderers.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if a program fails.
+    pub fn at(&self, ppem: u16) -> Result<TeacherAt, Error> {
+        check_ppem(f32::from(ppem))?;
+        let scaler = interpreter(self.unhinted.source(), ppem, self.raster, OnHintError::Fail);
+        if let Some(e) = scaler.hinting_error() {
+            return Err(Error::Malformed(format!(
+                "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"
+            )));
+        }
+        if scaler.hint_engine() != Some(HintEngine::TrueType) {
+            return Err(Error::Unsupported(format!(
+                "skrifa does not run the font's hint programs at {ppem} ppem; pass a hinted TrueType font"
+            )));
+        }
+        Ok(TeacherAt { strict: scaler, lenient: OnceLock::new(), ppem, raster: self.raster })
+    }
+
+    /// The unhinted outline at any size.
+    ///
+    /// # Errors
+    ///
+    /// `NoSuchGlyph` for a glyph that the font does not have, `Malformed` for one that cannot be drawn.
+    pub fn unhinted(&self, gid: u16, ppem: f32) -> Result<Outline, Error> {
+        check_ppem(ppem)?;
+        self.unhinted.at(gid, ppem)
+    }
+
+    /// The unhinted outline in em.
+    ///
+    /// # Errors
+    ///
+    /// As `unhinted`.
+    pub fn unhinted_em(&self, gid: u16) -> Result<Outline, Error> {
+        self.unhinted.em(gid)
+    }
+}
+
+/// The teacher at one size.
+pub struct TeacherAt {
+    strict: ScalerFont,
+    /// Created for the first glyph whose program fails, which most fonts do not have.
+    lenient: OnceLock<ScalerFont>,
+    ppem: u16,
+    raster: RasterTarget,
+}
+
+impl TeacherAt {
+    /// The size in pixels per em.
+    pub fn ppem(&self) -> u16 {
+        self.ppem
+    }
+
+    /// Whether the font wants hinting at this size; its `prep` program can switch it off.
+    pub fn is_hinted(&self) -> bool {
+        self.strict.is_hinted()
+    }
+
+    /// The hinted outline.
+    ///
+    /// # Errors
+    ///
+    /// `NoSuchGlyph` for a glyph that the font does not have, `Malformed` if it cannot be drawn.
+    pub fn hinted(&self, gid: u16) -> Result<Outline, Error> {
+        self.hinted_with_error(gid).map(|(outline, _)| outline)
+    }
+
+    /// The hinted outline, and the error of the glyph's hint program if it fails. Other renderers keep what the program
+    /// has done up to the error, and so does this teacher.
+    ///
+    /// # Errors
+    ///
+    /// As `hinted`.
+    pub fn hinted_with_error(&self, gid: u16) -> Result<(Outline, Option<String>), Error> {
+        let ppem = f32::from(self.ppem);
+        match draw(&self.strict, gid) {
+            Ok(outline) => Ok((outline, None)),
+            Err(e @ ScaleError::Hinting(_)) => {
+                let lenient = self.lenient.get_or_init(|| {
+                    interpreter(
+                        glyf_of(self.strict.font().clone()),
+                        self.ppem,
+                        self.raster,
+                        OnHintError::Keep,
+                    )
+                });
+                let outline = draw(lenient, gid).map_err(|e| undrawable(gid, Some(ppem), &e))?;
+                let hint_error = format!(
+                    "the hint program of glyph {gid} fails at {ppem} ppem ({e}); other renderers ignore that, and so \
+                     does the model"
+                );
+                Ok((outline, Some(hint_error)))
+            }
+            Err(e) => Err(undrawable(gid, Some(ppem), &e)),
+        }
+    }
+}
+
+fn check_ppem(ppem: f32) -> Result<(), Error> {
+    if ppem > 0.0 && ppem <= f32::from(MAX_TEACHER_PPEM) {
+        return Ok(());
+    }
+    Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_TEACHER_PPEM}")))
+}
+
+/// The treatment of a glyph whose hint program fails.
+#[derive(Clone, Copy, PartialEq)]
+enum OnHintError {
+    /// Drawing fails.
+    Fail,
+    /// The points stay where the program left them.
+    Keep,
+}
+
+/// The font's own programs for one size, with the settings under which skrifa equals FreeType's default render.
+/// FreeType 2.13 ignores `gasp`; skrifa calls that classic ClearType.
+fn interpreter(
+    font: impl Into<ScalerSource>,
+    ppem: u16,
+    target: RasterTarget,
+    on_error: OnHintError,
+) -> ScalerFont {
+    let options = HintOptions::interpreter()
+        .with_target(target)
+        .with_classic_cleartype(true)
+        .with_symmetric_rendering(true)
+        .with_preserve_linear_metrics(false)
+        .with_pedantic(on_error == OnHintError::Fail);
+    ScalerFont::hinted(font, f32::from(ppem), options)
+}
+
+/// skrifa's name of a target.
+fn raster_target(target: Target) -> Result<RasterTarget, Error> {
+    match target {
+        Target::Smooth => Ok(RasterTarget::Normal),
+        Target::Mono => Ok(RasterTarget::Mono),
+        Target::Lcd => Ok(RasterTarget::Lcd),
+        other => Err(Error::Unsupported(format!("there is no teacher for the target {other}"))),
+    }
+}
