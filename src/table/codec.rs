@@ -145,17 +145,34 @@ fn body<C: Coder>(
     if weights.cells == [0, 0] {
         return Ok(());
     }
-    for axis in [&mut weights.warp_x, &mut weights.warp_y] {
-        warp::code(model, axis, scale)?;
+    for section in [Section::Warp, Section::Field, Section::Patterns, Section::Embedding] {
+        code_section(model, weights, scale, section)?;
+        after(section, &mut model.coder);
     }
-    after(Section::Warp, &mut model.coder);
-    planes::field(model, weights)?;
-    after(Section::Field, &mut model.coder);
-    planes::patterns(model, weights)?;
-    after(Section::Patterns, &mut model.coder);
-    planes::embedding(model, weights, scale)?;
-    after(Section::Embedding, &mut model.coder);
     Ok(())
+}
+
+/// Codes one section; a reader needs the weights of the sections before it. Sections have no contexts in common.
+///
+/// # Errors
+///
+/// As [`decode`].
+pub fn code_section<C: Coder>(
+    model: &mut ContextModel<'_, C>,
+    weights: &mut Weights,
+    scale: Scale,
+    section: Section,
+) -> Result<(), Damage> {
+    match section {
+        Section::Header => header(model, weights, scale),
+        Section::Warp => {
+            warp::code(model, &mut weights.warp_x, scale)?;
+            warp::code(model, &mut weights.warp_y, scale)
+        }
+        Section::Field => planes::field(model, weights),
+        Section::Patterns => planes::patterns(model, weights),
+        Section::Embedding => planes::embedding(model, weights, scale),
+    }
 }
 
 /// Counts, knots and the box.

@@ -1,5 +1,7 @@
 //! The bits that weights take in the table, and the training of the coder's prior probabilities.
 
+use std::sync::LazyLock;
+
 use crate::error::Error;
 use nfr::internals::model::gridfit::{Scale, Weights};
 use nfr::internals::table::codec::{self, Section};
@@ -32,6 +34,10 @@ impl Cost {
     }
 }
 
+/// −log₂ of each probability but 0.
+static INFORMATION: LazyLock<[f64; ONE as usize + 1]> =
+    LazyLock::new(|| std::array::from_fn(|probability| -(probability as f64 / f64::from(ONE)).log2()));
+
 /// A coder that adds up information content (−log₂ of each decision's probability).
 #[derive(Default)]
 struct Meter {
@@ -43,7 +49,7 @@ impl Coder for Meter {
 
     fn bit(&mut self, probability: u32, bit: bool) -> bool {
         let probability = if bit { probability } else { ONE - probability };
-        self.bits -= (f64::from(probability) / f64::from(ONE)).log2();
+        self.bits += INFORMATION[probability as usize];
         bit
     }
 }
@@ -68,6 +74,18 @@ pub fn cost(weights: &Weights, scale: Scale) -> Result<Cost, Error> {
     };
     codec::code(&mut model, &mut weights.clone(), scale, charge)?;
     Ok(cost)
+}
+
+/// The bits of one section of weights.
+///
+/// # Errors
+///
+/// As [`cost`].
+pub(crate) fn section_bits(weights: &mut Weights, scale: Scale, section: Section) -> Result<f64, Error> {
+    let mut model = ContextModel::new(Meter::default(), &PRIOR);
+    // A coder that writes leaves the weights as they are.
+    codec::code_section(&mut model, weights, scale, section)?;
+    Ok(model.coder.bits)
 }
 
 /// Epochs; later ones change nothing.

@@ -5,14 +5,16 @@
 //! at the sizes that they influence.
 
 mod distortion;
-mod rate;
+mod prediction;
 
+use crate::cost::section_bits;
 use crate::error::Error;
 use crate::options::Refinement;
 use crate::training_samples::GlyphSamples;
 use distortion::{Distortion, SizeSubset};
 use nfr::internals::model::gridfit::{DEFORM_NODES, FIELD_LIMIT, FIELD_STEPS, GridFit, Scale, Weights};
-use rate::{Plane, WarpRate, embedding_bits};
+use nfr::internals::table::codec::Section;
+use prediction::{Plane, WarpPrediction};
 
 /// The largest change of a weight in one round, in quantisation steps.
 const MAX_CHANGE: i32 = 8;
@@ -71,19 +73,17 @@ struct CoordinateDescent {
 
 impl CoordinateDescent {
     /// Sets a weight, `current`, to the value of `candidates` with the least error + λ · bits over the sizes of `subset`.
-    /// Where a candidate is better, the value a step beyond it becomes a candidate too. `set` stores a value, `bits`
-    /// returns the bits of all weights whose rate depends on it.
+    /// Where a candidate is better, the value a step beyond it becomes a candidate too. `set` stores a value. The bits are
+    /// those of the coder for the section that the weight belongs to.
     fn descend(
         &mut self,
         current: i32,
         candidates: &mut Vec<i32>,
         subset: &SizeSubset,
+        section: Section,
         set: impl Fn(&mut Weights, &mut GridFit, i32),
-        bits: impl Fn(&Weights) -> f64,
     ) -> Result<(), Error> {
-        let error_per_bit = self.options.error_per_bit;
-        let mut least =
-            self.distortion.error(&self.model, subset, f64::INFINITY)? + error_per_bit * bits(&self.weights);
+        let mut least = self.distortion.error(&self.model, subset, f64::INFINITY)? + self.rate(section)?;
         let mut chosen = current;
         let mut k = 0;
         while let Some(&value) = candidates.get(k) {
@@ -93,7 +93,7 @@ impl CoordinateDescent {
                 continue;
             }
             set(&mut self.weights, &mut self.model, value);
-            let rate = error_per_bit * bits(&self.weights);
+            let rate = self.rate(section)?;
             let total = self.distortion.error(&self.model, subset, least - rate)? + rate;
             if total < least {
                 least = total;
@@ -108,6 +108,12 @@ impl CoordinateDescent {
         Ok(())
     }
 
+    /// λ · bits of a section.
+    fn rate(&mut self, section: Section) -> Result<f64, Error> {
+        let bits = section_bits(&mut self.weights, self.scale, section)?;
+        Ok(self.options.error_per_bit * bits)
+    }
+
     /// Hinted positions of one axis, size by size.
     fn warp(&mut self, axis: usize) -> Result<(), Error> {
         let warp = |weights: &Weights| match axis {
@@ -116,7 +122,7 @@ impl CoordinateDescent {
         };
         let start = warp(&self.weights);
         let count = start.knots.len();
-        let rate = WarpRate::new(&start, self.scale);
+        let prediction = WarpPrediction::new(&start, self.scale);
         for (s, k) in (0..self.scale.sizes()).flat_map(|s| (0..count).map(move |k| (s, k))) {
             let hinted = if axis == 0 { &self.weights.warp_x.hinted } else { &self.weights.warp_y.hinted };
             let at = s * count + k;
@@ -124,7 +130,7 @@ impl CoordinateDescent {
             let low = if k > 0 { hinted[at - 1] } else { i32::MIN };
             let high = if k + 1 < count { hinted[at + 1] } else { i32::MAX };
             let mut candidates = vec![current - 1, current + 1];
-            candidates.extend(rate.candidates(hinted, s, k));
+            candidates.extend(prediction.candidates(hinted, s, k));
             candidates.retain(|t| {
                 *t != current && *t > low && *t < high && (*t - current).abs() <= MAX_PREDICTED_CHANGE
             });
@@ -138,11 +144,7 @@ impl CoordinateDescent {
                 hinted[at] = value;
                 model.set_hinted(axis, s, k, value);
             };
-            let bits = |weights: &Weights| {
-                let hinted = if axis == 0 { &weights.warp_x.hinted } else { &weights.warp_y.hinted };
-                rate.bits(hinted, s, k)
-            };
-            self.descend(current, &mut candidates, &SizeSubset::one(s), set, bits)?;
+            self.descend(current, &mut candidates, &SizeSubset::one(s), Section::Warp, set)?;
         }
         Ok(())
     }
@@ -161,8 +163,8 @@ impl CoordinateDescent {
                 weights.field[at] = value as i8;
                 model.set_field(at, value as i8);
             };
-            let bits = |weights: &Weights| Plane { values: &weights.field, stride }.bits(at);
-            self.descend(current, &mut byte_candidates(current, predicted), &subset, set, bits)?;
+            let candidates = &mut byte_candidates(current, predicted);
+            self.descend(current, candidates, &subset, Section::Field, set)?;
         }
         Ok(())
     }
@@ -173,7 +175,7 @@ impl CoordinateDescent {
         for at in 0..self.weights.patterns.len() {
             let (r, node) = (at / NODES, at % NODES);
             let own = r * NODES..(r + 1) * NODES;
-            let plane = Plane { values: &self.weights.patterns[own.clone()], stride: DEFORM_NODES };
+            let plane = Plane { values: &self.weights.patterns[own], stride: DEFORM_NODES };
             let (current, predicted) = (i32::from(self.weights.patterns[at]), plane.prediction(node));
             let embedding = &self.weights.embedding;
             let is_used = |s: usize| embedding.get(s * rank + r).is_some_and(|weight| *weight != 0);
@@ -182,10 +184,8 @@ impl CoordinateDescent {
                 weights.patterns[at] = value as i8;
                 model.set_pattern(at, value as i8);
             };
-            let bits = |weights: &Weights| {
-                Plane { values: &weights.patterns[own.clone()], stride: DEFORM_NODES }.bits(node)
-            };
-            self.descend(current, &mut byte_candidates(current, predicted), &subset, set, bits)?;
+            let candidates = &mut byte_candidates(current, predicted);
+            self.descend(current, candidates, &subset, Section::Patterns, set)?;
         }
         Ok(())
     }
@@ -199,9 +199,8 @@ impl CoordinateDescent {
                 weights.embedding[at] = value as i8;
                 model.set_embedding(at / rank, at % rank, value as i8);
             };
-            let bits = |weights: &Weights| embedding_bits(weights.embedding[at]);
             let subset = SizeSubset::one(at / rank);
-            self.descend(current, &mut byte_candidates(current, 0), &subset, set, bits)?;
+            self.descend(current, &mut byte_candidates(current, 0), &subset, Section::Embedding, set)?;
         }
         Ok(())
     }

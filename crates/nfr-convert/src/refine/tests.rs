@@ -1,5 +1,6 @@
 use super::*;
 use crate::compare::metrics::Sums;
+use crate::cost::cost;
 use crate::fit::initial_fit;
 use crate::fixtures::glyph_samples;
 use crate::options::Capacity;
@@ -51,14 +52,27 @@ fn a_higher_price_of_bits_saves_bits() {
     let bits = |error_per_bit: f64| {
         let mut weights = start.clone();
         refine(&mut weights, &glyphs[0], scale, Refinement { rounds: 1, error_per_bit }).unwrap();
-        let rate = WarpRate::new(&weights.warp_y, scale);
-        let count = weights.warp_y.knots.len();
-        let warp = (0..weights.warp_y.hinted.len())
-            .map(|at| rate.bits(&weights.warp_y.hinted, at / count, at % count));
-        let plane = Plane { values: &weights.field, stride: usize::from(weights.cells[0]) + 2 };
-        warp.sum::<f64>() + (0..weights.field.len()).map(|at| plane.bits(at)).sum::<f64>()
+        cost(&weights, scale).unwrap().total()
     };
     assert!(bits(0.1) < 0.95 * bits(0.0));
+}
+
+#[test]
+fn the_price_of_a_section_is_its_share_of_the_whole_message() {
+    let (glyphs, scale) = glyph_samples("g", Target::Mono);
+    let mut weights = initial_weights(&glyphs[0], scale, Target::Mono);
+    let (before, whole) = (weights.clone(), cost(&weights, scale).unwrap());
+    for (section, bits) in [
+        (Section::Header, whole.header),
+        (Section::Warp, whole.warp),
+        (Section::Field, whole.field),
+        (Section::Patterns, whole.patterns),
+        (Section::Embedding, whole.embedding),
+    ] {
+        let alone = section_bits(&mut weights, scale, section).unwrap();
+        assert!((alone - bits).abs() < 1e-6 && bits > 0.0, "{section:?}: {alone} for {bits}");
+    }
+    assert_eq!(weights, before);
 }
 
 /// Changing a model's weights one by one is the same as making a model of the changed weights.
