@@ -1,4 +1,4 @@
-//! A network's numbers: f32 by bytes of the same place value, weights as integers with a scale for each output.
+//! A network's numbers: f32 by bytes of the same significance, weights as integers with a scale for each output.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -80,7 +80,7 @@ fn unpack(mut frame: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
     Ok(plain)
 }
 
-/// The f32 whose first bytes stand side by side, then their second, third and fourth ones.
+/// The f32 of four byte planes: all first bytes, then all second, third and fourth ones.
 fn joined(planes: &[u8], count: usize) -> Result<Vec<f32>, Damage> {
     let at = |k: usize| f32::from_be_bytes([0, 1, 2, 3].map(|plane| planes[plane * count + k]));
     let floats: Vec<f32> = (0..count).map(at).collect();
@@ -184,7 +184,7 @@ fn scales(dense: &Dense, precision: Precision) -> Vec<f32> {
 }
 
 fn step(weight: f32, scale: f32, precision: Precision) -> i16 {
-    // A scale may be 0, and then nothing is lost that an f32 could hold.
+    // A scale is 0 only if all weights of the output are (nearly) 0.
     if scale > 0.0 {
         libm::roundf(weight / scale).clamp(-precision.most(), precision.most()) as i16
     } else {
