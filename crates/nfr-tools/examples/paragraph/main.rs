@@ -13,8 +13,6 @@
 
 mod layout;
 mod renderer;
-#[path = "../shared/skrifa_zeno.rs"]
-mod skrifa_zeno;
 
 use std::error::Error;
 use std::hint::black_box;

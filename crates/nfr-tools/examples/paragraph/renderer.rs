@@ -5,9 +5,8 @@ use std::error::Error;
 use nfr::{BitmapRef, DrawOptions, Placement, Rasterizer};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::open::owned;
+use nfr_tools::bench::skrifa_zeno::{SkrifaZeno, hint_options, hinted, outlines};
 use skrifa::ScalerFont;
-
-use super::skrifa_zeno::{SkrifaZeno, hint_options, hinted, outlines};
 
 /// A renderer at one size.
 pub(crate) enum Renderer {
@@ -33,7 +32,7 @@ impl Renderer {
     }
 
     fn of_outlines(name: &'static str, scaler: ScalerFont) -> Self {
-        Self::Outlines { name, renderer: SkrifaZeno::new(), scaler: Box::new(scaler) }
+        Self::Outlines { name, renderer: SkrifaZeno::default(), scaler: Box::new(scaler) }
     }
 
     pub(crate) fn name(&self) -> &'static str {

@@ -1,11 +1,11 @@
-//! Draws, compares and describes neural fonts.
+//! Draws, compares, describes and times neural fonts.
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use nfr_tools as cli;
 
-/// Draws, compares and describes neural fonts
+/// Draws, compares, describes and times neural fonts
 #[derive(Debug, Parser)]
 #[command(name = "nfr", version)]
 struct Args {
@@ -18,6 +18,8 @@ enum Command {
     Render(cli::render::Args),
     Diff(cli::diff::Args),
     Info(cli::info::Args),
+    #[cfg(feature = "bench")]
+    Bench(cli::bench::Args),
     #[cfg(feature = "lab")]
     Lab(cli::lab::Args),
 }
@@ -27,6 +29,8 @@ fn main() -> ExitCode {
         Command::Render(args) => cli::render::run(&args),
         Command::Diff(args) => cli::diff::run(&args),
         Command::Info(args) => cli::info::run(&args),
+        #[cfg(feature = "bench")]
+        Command::Bench(args) => cli::bench::run(&args),
         #[cfg(feature = "lab")]
         Command::Lab(args) => cli::lab::run(&args),
     })

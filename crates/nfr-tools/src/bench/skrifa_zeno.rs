@@ -12,7 +12,8 @@ use skrifa::{
 use zeno::{Command, Mask, Origin, PathBuilder, Placement, Scratch};
 
 /// Draws glyphs from their outlines.
-pub(crate) struct SkrifaZeno {
+#[derive(Default)]
+pub struct SkrifaZeno {
     path: Path,
     memory: Vec<u8>,
     scratch: Scratch,
@@ -20,13 +21,13 @@ pub(crate) struct SkrifaZeno {
 }
 
 impl SkrifaZeno {
-    pub(crate) fn new() -> Self {
-        Self { path: Path::default(), memory: Vec::new(), scratch: Scratch::new(), pixels: Vec::new() }
-    }
-
     /// Draws a glyph's coverage, 0–255, top row first, with its origin at `x` pixels. Font, size and hinting are the
     /// scaler's.
-    pub(crate) fn draw(
+    ///
+    /// # Errors
+    ///
+    /// A glyph that is not in the font, or whose outline cannot be read.
+    pub fn draw(
         &mut self,
         scaler: &ScalerFont,
         gid: u16,
@@ -77,18 +78,22 @@ impl PathSink for Path {
 }
 
 /// The outlines of a font that the models were trained on, as in [`nfr_convert::teacher`].
-pub(crate) fn outlines(font: Font) -> ScalerSource {
+pub fn outlines(font: Font) -> ScalerSource {
     ScalerSource::new(font, GlyphSourceOrder::BASE_OUTLINES)
 }
 
 /// The hinting that the models were trained on: the font's own programs, as in [`nfr_convert::teacher`]. A glyph whose
 /// program fails is drawn as the program left it.
-pub(crate) fn hint_options(target: Target) -> Result<HintOptions, Box<dyn Error>> {
+///
+/// # Errors
+///
+/// A target that skrifa has no counterpart of.
+pub fn hint_options(target: Target) -> Result<HintOptions, Box<dyn Error>> {
     let target = match target {
         Target::Smooth => RasterTarget::Normal,
         Target::Mono => RasterTarget::Mono,
         Target::Lcd => RasterTarget::Lcd,
-        other => return Err(format!("this example does not know the target {other}").into()),
+        other => return Err(format!("skrifa has no counterpart of the target {other}").into()),
     };
     Ok(HintOptions::interpreter()
         .with_target(target)
@@ -99,22 +104,15 @@ pub(crate) fn hint_options(target: Target) -> Result<HintOptions, Box<dyn Error>
 }
 
 /// Sets hinting up for a size: runs the programs `fpgm` and `prep`.
-pub(crate) fn hinted(
-    outlines: ScalerSource,
-    ppem: u16,
-    options: HintOptions,
-) -> Result<ScalerFont, Box<dyn Error>> {
+///
+/// # Errors
+///
+/// Programs that fail, or that do not run.
+pub fn hinted(outlines: ScalerSource, ppem: u16, options: HintOptions) -> Result<ScalerFont, Box<dyn Error>> {
     let scaler = ScalerFont::hinted(outlines, f32::from(ppem), options);
-    check(&scaler)?;
-    Ok(scaler)
-}
-
-/// Refuses a scaler that does not run the font's programs.
-pub(crate) fn check(scaler: &ScalerFont) -> Result<(), Box<dyn Error>> {
     if scaler.hint_engine() == Some(HintEngine::TrueType) {
-        return Ok(());
+        return Ok(scaler);
     }
-    let ppem = scaler.ppem().unwrap_or_default();
     Err(match scaler.hinting_error() {
         Some(e) => format!("the original font's programs fail at {ppem} ppem ({e})"),
         None => format!("skrifa does not run the original font's programs at {ppem} ppem"),

@@ -5,7 +5,7 @@ use std::error::Error;
 use nfr::Rasterizer;
 
 /// A glyph's coverage, 0–255, top row first.
-pub(crate) struct Coverage<'a> {
+pub(super) struct Coverage<'a> {
     pixels: &'a [u8],
     width: usize,
     /// The bytes between the beginnings of two rows.
@@ -14,12 +14,12 @@ pub(crate) struct Coverage<'a> {
 
 impl<'a> Coverage<'a> {
     /// Coverage with nothing between its rows.
-    pub(crate) fn packed(pixels: &'a [u8]) -> Self {
+    pub(super) fn packed(pixels: &'a [u8]) -> Self {
         Self { pixels, width: pixels.len(), pitch: pixels.len() }
     }
 
     /// Whether any pixel is covered.
-    pub(crate) fn has_ink(&self) -> bool {
+    pub(super) fn has_ink(&self) -> bool {
         let mut rows = self.pixels.chunks(self.pitch.max(1));
         rows.any(|row| row.iter().take(self.width).any(|coverage| *coverage > 0))
     }
@@ -28,14 +28,14 @@ impl<'a> Coverage<'a> {
 /// An application's buffer, which is used for one glyph after the other. It holds the largest, and its rows are as far
 /// apart as the widest asks for.
 #[derive(Default)]
-pub(crate) struct Buffer {
+pub(super) struct Buffer {
     pixels: Vec<u8>,
     pitch: usize,
 }
 
 impl Buffer {
     /// Makes room for each of these glyphs at each of these sizes.
-    pub(crate) fn new(
+    pub(super) fn new(
         rasterizer: &mut Rasterizer,
         sizes: &[u16],
         gids: &[u16],
@@ -49,7 +49,7 @@ impl Buffer {
     }
 
     /// Draws a glyph with ours.
-    pub(crate) fn draw(
+    pub(super) fn draw(
         &mut self,
         rasterizer: &mut Rasterizer,
         gid: u16,
