@@ -62,6 +62,8 @@ pub enum Error {
         /// How much the format allows.
         limit: u64,
     },
+    /// A glyph's outline is not the one that its model was made for.
+    StaleModel(u32),
     /// The font has no glyph with this number.
     NoSuchGlyph(u32),
     /// The font has this glyph, but no model of it. [`MissingModel`](crate::MissingModel) chooses what is drawn then.
@@ -154,12 +156,15 @@ impl fmt::Display for Error {
             }
             Self::NotConverted => f.write_str("the font has no table 'Nfrt'"),
             Self::UnknownVersion { major } => {
-                write!(f, "table 'Nfrt' has version {major}, this program reads version 1")
+                write!(f, "table 'Nfrt' has version {major}, this program reads version 2")
             }
             Self::MalformedModels { what, offset } => write!(f, "table 'Nfrt' {what} at byte {offset}"),
             Self::MalformedModel { glyph, what } => write!(f, "the model of glyph {glyph} {what}"),
             Self::ModelTooLarge { glyph, what, count, limit } => {
                 write!(f, "the model of glyph {glyph} has {count} {what}, {limit} are allowed")
+            }
+            Self::StaleModel(glyph) => {
+                write!(f, "the outline of glyph {glyph} was changed after its model was made")
             }
             Self::NoSuchGlyph(glyph) => write!(f, "the font has no glyph {glyph}"),
             Self::MissingModel(glyph) => write!(f, "glyph {glyph} has no model in this font"),
@@ -205,6 +210,8 @@ impl core::error::Error for Error {}
 pub enum Damage {
     /// They contradict their own format; the text goes on after "the model".
     Malformed(&'static str),
+    /// They belong to another outline.
+    Stale,
     /// They ask for more of something than the format allows.
     TooLarge {
         /// What there is too much of.
@@ -221,6 +228,7 @@ impl Damage {
     pub fn of(self, glyph: u32) -> Error {
         match self {
             Self::Malformed(what) => Error::MalformedModel { glyph, what },
+            Self::Stale => Error::StaleModel(glyph),
             Self::TooLarge { what, count, limit } => Error::ModelTooLarge { glyph, what, count, limit },
         }
     }

@@ -45,8 +45,9 @@ pub use target::Target;
 #[doc(hidden)]
 pub mod internals {
     pub use crate::error::Damage;
+    pub use crate::number::mul_fixed;
     pub use crate::placement::union;
-    pub use crate::render::{Decoder, Font, Glyph, Scratch, head_units, open};
+    pub use crate::render::{Decoder, Font, Glyph, Scratch, components, head_units, open, recode_outlines};
 
     use crate::Error;
     use model::gridfit::Scale;
@@ -54,7 +55,7 @@ pub mod internals {
 
     /// The models.
     pub mod model {
-        pub use crate::model::{compose, contour, grid, hinting, sizes};
+        pub use crate::model::{compose, contour, grid, hinting, outline, sizes};
 
         /// The grid-fit model.
         pub mod gridfit {
@@ -73,6 +74,7 @@ pub mod internals {
     /// The table.
     pub mod table {
         pub use crate::table::*;
+        pub use read_fonts::types::BigEndian;
     }
 
     /// What the conversion was asked for.

@@ -5,50 +5,86 @@ mod samples;
 
 use nfr::{Bitmap, DrawOptions, Font, MissingModel, Rasterizer};
 use read_fonts::model;
-use read_fonts::model::glyph::outline::{DrawMemory, DrawOptions as OutlineOptions, PathElement};
+use read_fonts::model::glyph::outline::{DrawMemory, UnscaledOutlineSink};
+use read_fonts::tables::glyf::PointFlags;
 use read_fonts::types::GlyphId;
 
 use samples::{bytes, without_models};
 
 /// Samples of a pixel along each axis.
 const SAMPLES: i32 = 32;
-/// Levels that a pixel may be off: a row of samples is 8 levels of a pixel that a level side crosses, and a curve's sides
-/// are off by a 128th of a pixel, 2 levels.
-const TOLERANCE: u8 = 10;
+/// Levels that a pixel may be off: the samples of a side may count half a row of samples too much, 4 levels; a level is
+/// rounded down; and where a side crosses the borders of pixels is rounded down to 1/256 pixel.
+const TOLERANCE: u8 = 6;
 
-/// The sides of a glyph's outline in pixels, with curves in very short pieces.
-fn sides(font: &model::Font, glyph: u32, ppem: f32, offset: [f32; 2]) -> Vec<[[f32; 2]; 2]> {
-    let mut path: Vec<PathElement> = Vec::new();
-    let outline = font.outline_glyphs().get(GlyphId::new(glyph)).unwrap();
-    outline.draw(&OutlineOptions::new().with_ppem(Some(ppem)), DrawMemory::default(), &mut path).unwrap();
-    let (mut sides, mut start, mut at) = (Vec::new(), [0.0; 2], [0.0; 2]);
-    let moved = |x: f32, y: f32| [x + offset[0], y + offset[1]];
-    for element in path {
-        match element {
-            PathElement::MoveTo { x, y } => (start, at) = (moved(x, y), moved(x, y)),
-            PathElement::LineTo { x, y } => {
-                sides.push([at, moved(x, y)]);
-                at = moved(x, y);
+/// The contours of an outline: points in font units, and whether each is on the curve.
+#[derive(Default)]
+struct Contours(Vec<Vec<([i32; 2], bool)>>);
+
+impl UnscaledOutlineSink for Contours {
+    fn start_contour(&mut self) {
+        self.0.push(Vec::new());
+    }
+
+    fn point(&mut self, x: i32, y: i32, flags: PointFlags) {
+        self.0.last_mut().unwrap().push(([x, y], flags.is_on_curve()));
+    }
+
+    fn end_contour(&mut self) {}
+}
+
+/// The sides of a glyph's outline in pixels. Points are rounded to 1/64 pixel, and curves are cut into as many pieces as
+/// FreeType cuts them into.
+fn sides(font: &Font, glyph: u32, ppem: f32, offset: [f32; 2]) -> Vec<[[f32; 2]; 2]> {
+    let file = model::Font::new(font.data().to_vec(), 0).unwrap();
+    let mut contours = Contours::default();
+    let outline = file.outline_glyphs().get(GlyphId::new(glyph)).unwrap();
+    outline.draw_unscaled(DrawMemory::default(), &mut contours).unwrap();
+    let scale =
+        (f64::from((ppem * 64.0).round()) * 65536.0 / f64::from(font.units_per_em())).round() / 65536.0;
+    let mut sides = Vec::new();
+    for contour in contours.0 {
+        let mut points: Vec<([i32; 2], bool)> = Vec::new();
+        for (at, on_curve) in contour.iter().chain(contour.first()) {
+            let at = at.map(|units| (f64::from(units) * scale).round() as i32);
+            if let Some((before, false)) = points.last().filter(|_| !on_curve) {
+                points.push(([0, 1].map(|k| (before[k] + at[k]) / 2), true));
             }
-            PathElement::QuadTo { cx0, cy0, x, y } => {
-                let (a, b, c) = (at, moved(cx0, cy0), moved(x, y));
-                for piece in 1..=16u8 {
-                    let t = f32::from(piece) / 16.0;
-                    let curve =
-                        |k: usize| (1.0 - t) * (1.0 - t) * a[k] + 2.0 * t * (1.0 - t) * b[k] + t * t * c[k];
-                    let next = [curve(0), curve(1)];
-                    sides.push([at, next]);
-                    at = next;
-                }
-            }
-            PathElement::CurveTo { .. } => panic!("no cubic curve in TrueType"),
-            PathElement::Close => {
-                sides.push([at, start]);
-                at = start;
+            points.push((at, *on_curve));
+        }
+        // The first point is at the end again.
+        points.pop();
+        let first = points.iter().position(|(_, on_curve)| *on_curve).unwrap();
+        points.rotate_left(first);
+        points.push(points[0]);
+        let pixels = |k: usize| [0, 1].map(|axis| points[k].0[axis] as f32 / 64.0 + offset[axis]);
+        let mut k = 0;
+        while k + 1 < points.len() {
+            if points[k + 1].1 {
+                sides.push([pixels(k), pixels(k + 1)]);
+                k += 1;
+            } else {
+                sides.extend(pieces([pixels(k), pixels(k + 1), pixels(k + 2)]));
+                k += 2;
             }
         }
     }
     sides
+}
+
+/// The sides of a curve. It is halved, and its halves are, until the second difference is at most 1/4 pixel, or in the
+/// units of 1/256 pixel less than 65.
+fn pieces([a, b, c]: [[f32; 2]; 3]) -> Vec<[[f32; 2]; 2]> {
+    let bend = [0, 1].map(|k| (a[k] + c[k] - 2.0 * b[k]).abs() * 256.0);
+    let mut count = 1.0;
+    while bend[0].max(bend[1]) / (count * count) >= 65.0 {
+        count *= 2.0;
+    }
+    let at = |piece: u16| {
+        let t = f32::from(piece) / count;
+        [0, 1].map(|k| (1.0 - t) * (1.0 - t) * a[k] + 2.0 * t * (1.0 - t) * b[k] + t * t * c[k])
+    };
+    (0..count as u16).map(|piece| [at(piece), at(piece + 1)]).collect()
 }
 
 /// How often the outline goes around a point.
@@ -66,8 +102,7 @@ fn compare(font: &Font, glyph: u32, ppem: f32, offset: [f32; 2]) -> Bitmap {
     let options = DrawOptions::new(ppem).with_offset(offset);
     let mut rasterizer = Rasterizer::new(font).with_missing_model(MissingModel::Outline);
     let bitmap = rasterizer.render(glyph, options).unwrap();
-    let file = model::Font::new(font.data().to_vec(), 0).unwrap();
-    let sides = sides(&file, glyph, ppem, offset);
+    let sides = sides(font, glyph, ppem, offset);
     let place = bitmap.placement;
     // One pixel more around it, which has to be empty.
     for row in -1..=place.height as i32 {
@@ -81,7 +116,7 @@ fn compare(font: &Font, glyph: u32, ppem: f32, offset: [f32; 2]) -> Bitmap {
                 let y = (place.top - row) as f32 - sample(k / SAMPLES);
                 winding(&sides, [x, y]) != 0
             });
-            let expected = (hits.count() as i32 * 255 / (SAMPLES * SAMPLES)) as u8;
+            let expected = (hits.count() as i32 * 256 / (SAMPLES * SAMPLES)).min(255) as u8;
             assert!(
                 drawn.abs_diff(expected) <= TOLERANCE,
                 "glyph {glyph} at {ppem} ppem, row {row}, column {column}: {drawn} for {expected}"

@@ -8,8 +8,11 @@ use std::thread;
 use nfr::{Bitmap, DrawOptions, Error, Font, Rasterizer};
 
 /// The fonts: `NAME.ttf`, whose vectors are in `NAME.txt`.
-pub(crate) const FONTS: &[&str] =
-    if cfg!(feature = "networks") { &["sans", "serif", "mono", NETWORK] } else { &["sans", "serif", "mono"] };
+pub(crate) const FONTS: &[&str] = if cfg!(feature = "networks") {
+    &["sans", "serif", "mono", "outline", "outline-mono", NETWORK]
+} else {
+    &["sans", "serif", "mono", "outline", "outline-mono"]
+};
 /// The font that has networks. Without the feature `networks` it is left out.
 const NETWORK: &str = "network";
 /// The file with whole bitmaps.

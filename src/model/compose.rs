@@ -2,9 +2,10 @@
 
 use alloc::vec::Vec;
 
+use super::outline::scale_of;
 use super::sizes::{HintedSize, Scale};
 use crate::error::Damage;
-use crate::number::floor;
+use crate::number::{floor, mul_fixed};
 
 /// Offsets that are not rounded to the pixel grid are rounded to this fraction of a pixel, as scaled outlines are.
 const FRACTION: f32 = 64.0;
@@ -28,6 +29,28 @@ pub struct Part {
     /// For x and y: empty if the scaled offset is rounded to 1/64 pixel. Otherwise it is rounded to the pixel grid, and
     /// these are the pixels that are added to [`round_to_grid`] at each trained size.
     pub grid_offsets: [Vec<i8>; 2],
+}
+
+impl Part {
+    /// The offset along x and y at a size, in 1/64 pixel, as it is added to hinted outlines: scaled as FreeType does it, and
+    /// rounded to the pixel grid where it has grid offsets, which are then added.
+    pub fn offset_at(&self, size: &HintedSize, units_per_em: u16) -> [i32; 2] {
+        [0, 1].map(|axis| {
+            let grid_offset = self.grid_offsets[axis].get(size.index).filter(|_| size.strength > 0.0);
+            let follows_whole_size = grid_offset.is_some() || axis == 1;
+            let ppem = if follows_whole_size { size.trained_ppem } else { size.ppem };
+            let scaled = mul_fixed(self.offset[axis].into(), scale_of(ppem, units_per_em));
+            match grid_offset {
+                Some(pixels) => ((scaled + 32) & !63) + 64 * i32::from(*pixels),
+                None => scaled,
+            }
+        })
+    }
+
+    /// The memory that it takes, in bytes.
+    pub fn memory(&self) -> usize {
+        size_of::<Self>() + self.grid_offsets.iter().map(Vec::len).sum::<usize>()
+    }
 }
 
 /// `offset` (font units) at a size, rounded to whole pixels, halves upwards.

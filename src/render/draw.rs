@@ -1,31 +1,14 @@
-//! Drawing models: their outlines are hinted at a size, and filled.
+//! Drawing fields: their outlines are hinted at a size, and filled.
 
-use alloc::vec::Vec;
-
-use super::area::Area;
+use super::scratch::Scratch;
+use super::strips::{STRIP, in_strips};
 use crate::bitmap::Canvas;
 use crate::error::Error;
 use crate::limits::Budget;
-use crate::model::contour::{Polygons, Tracer};
 use crate::model::gridfit::{GridFit, placement_of};
-use crate::model::hinting::Hinting;
 use crate::model::sizes::HintedSize;
-use crate::number::{UNIT, round};
+use crate::number::UNIT;
 use crate::placement::{Placement, union};
-
-/// A bitmap with more pixels than this is drawn in strips, so that working memory is bounded.
-const STRIP: usize = 1 << 20;
-
-/// Working memory that drawing reuses.
-#[derive(Debug, Clone, Default)]
-pub struct Scratch {
-    hinting: Hinting,
-    /// Vertices in units from the bitmap's upper left corner, y down: coordinates along x and y.
-    points: [Vec<i32>; 2],
-    tracer: Tracer,
-    fresh: Polygons,
-    area: Area,
-}
 
 impl GridFit {
     /// Draws the pixels of `placement` at a size: those of the model's own placement, or more around them. `pixels`
@@ -92,74 +75,6 @@ fn draw_in_strips<'a, const MOST: usize>(
     })
 }
 
-/// Draws closed polygons, given by their vertices in pixels from the bitmap's upper left corner, y down, and by where
-/// each of them ends in that list; the inside is on the left as seen with y up. All vertices lie within the bitmap.
-///
-/// # Errors
-///
-/// `TooMuchWork`.
-pub(super) fn draw_polygons(
-    vertices: &[[f32; 2]],
-    ends: &[usize],
-    placement: Placement,
-    scratch: &mut Scratch,
-    canvas: &mut Canvas<'_>,
-    budget: &mut Budget,
-) -> Result<(), Error> {
-    in_strips::<STRIP>(placement, scratch, canvas, |strip, scratch| {
-        let shift = (strip.left - placement.left) * UNIT;
-        let Scratch { points: [x, y], area, .. } = scratch;
-        x.clear();
-        y.clear();
-        x.extend(vertices.iter().map(|v| round(v[0] * UNIT as f32) - shift));
-        y.extend(vertices.iter().map(|v| round(v[1] * UNIT as f32)));
-        budget.spend(area.most_steps(vertices.len()))?;
-        let mut start = 0;
-        for &end in ends {
-            if strip.is_whole {
-                area.polygon::<false>(&x[start..end], &y[start..end]);
-            } else {
-                area.polygon::<true>(&x[start..end], &y[start..end]);
-            }
-            start = end;
-        }
-        Ok(())
-    })
-}
-
-/// Some columns of a bitmap.
-struct Strip {
-    /// The pixel in the upper left corner.
-    left: i32,
-    top: i32,
-    /// Whether these are all columns.
-    is_whole: bool,
-}
-
-/// Draws in strips of columns, each of which has up to so many pixels, but one column at least.
-fn in_strips<const MOST: usize>(
-    placement: Placement,
-    scratch: &mut Scratch,
-    canvas: &mut Canvas<'_>,
-    mut add: impl FnMut(&Strip, &mut Scratch) -> Result<(), Error>,
-) -> Result<(), Error> {
-    let (width, height) = (placement.width as usize, placement.height as usize);
-    if width == 0 || height == 0 {
-        return Ok(());
-    }
-    let columns = (MOST / height).clamp(1, width);
-    for column in (0..width).step_by(columns) {
-        scratch.area.start(columns.min(width - column), height);
-        let left = placement.left.saturating_add(column as i32);
-        let strip = Strip { left, top: placement.top, is_whole: columns == width };
-        let added = add(&strip, scratch);
-        // Also after an error, so that nothing is left for the next bitmap.
-        scratch.area.finish(canvas.pitch, &mut canvas.pixels[column..]);
-        added?;
-    }
-    Ok(())
-}
-
 /// Draws one model, its origin at `origin` (pixels), into the canvas that `room` gives for its placement, if it gives one.
 ///
 /// # Errors
@@ -199,7 +114,7 @@ fn fill<const CLIP: bool>(
     scratch: &mut Scratch,
     budget: &mut Budget,
 ) -> Result<(), Error> {
-    let Scratch { hinting, points, tracer, fresh, area } = scratch;
+    let Scratch { hinting, points, tracer, fresh, area, .. } = scratch;
     let polygons = model.polygons(ppem, tracer, fresh);
     budget.spend(area.most_steps(polygons.at[0].len()))?;
     hinting.vertices(polygons, offset, points);

@@ -4,13 +4,15 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::draw::{Scratch, draw, draw_one};
-use super::font::Font;
+use super::draw::{draw, draw_one};
+use super::outline::draw_outlines;
+use super::scratch::Scratch;
 use crate::bitmap::{Bitmap, Canvas};
 use crate::error::Error;
 use crate::limits::{Budget, Limits};
-use crate::model::compose::Origin;
+use crate::model::compose::{Origin, Part};
 use crate::model::gridfit::GridFit;
+use crate::model::outline::OutlineModel;
 use crate::model::sizes::HintedSize;
 #[cfg(feature = "networks")]
 use crate::network::Network;
@@ -27,16 +29,42 @@ pub struct Glyph {
 
 /// What a glyph is drawn from.
 #[derive(Debug, Clone)]
-enum Drawn {
-    Parts(Vec<(Arc<GridFit>, Origin)>),
+pub(super) enum Drawn {
+    /// Outlines, which draw all sizes up to the ones that they are decoded to.
+    Outlines(Outlines),
+    Fields(Vec<(Arc<GridFit>, Origin)>),
     #[cfg(feature = "networks")]
     Network(Arc<Network>),
 }
 
+/// Outlines that are drawn together.
+#[derive(Debug, Clone)]
+pub(super) struct Outlines {
+    pub(super) parts: Vec<(Arc<OutlineModel>, Part)>,
+    /// The hinted advance width at each size, in whole pixels less the scaled one, rounded; empty if all are 0.
+    pub(super) advances: Vec<i8>,
+}
+
+/// A decoded model that glyphs share.
+#[derive(Debug, Clone)]
+pub(super) enum SharedModel {
+    Outline(Arc<OutlineModel>),
+    Field(Arc<GridFit>),
+}
+
 impl Glyph {
-    /// A glyph that is composed of models, each with its origin, with the default limits.
+    pub(super) fn new(glyph: u32, limits: Limits, drawn: Drawn) -> Self {
+        Self { glyph, limits, drawn }
+    }
+
+    /// A glyph that is composed of fields, each with its origin, with the default limits.
     pub fn of_models(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
-        Self { glyph: 0, limits: Limits::default(), drawn: Drawn::Parts(parts) }
+        Self::new(0, Limits::default(), Drawn::Fields(parts))
+    }
+
+    /// A glyph that is composed of outlines, with the default limits.
+    pub fn of_outlines(parts: Vec<(Arc<OutlineModel>, Part)>) -> Self {
+        Self::new(0, Limits::default(), Drawn::Outlines(Outlines { parts, advances: Vec::new() }))
     }
 
     /// A glyph that a network draws, with limits that fit any network.
@@ -47,11 +75,36 @@ impl Glyph {
     }
 
     /// The first part's model, to be shared with other glyphs.
-    pub(super) fn model(&self) -> Option<Arc<GridFit>> {
+    pub(super) fn model(&self) -> Option<SharedModel> {
         match &self.drawn {
-            Drawn::Parts(parts) => parts.first().map(|(model, _)| model.clone()),
+            Drawn::Outlines(outlines) => {
+                outlines.parts.first().map(|(model, _)| SharedModel::Outline(model.clone()))
+            }
+            Drawn::Fields(parts) => parts.first().map(|(model, _)| SharedModel::Field(model.clone())),
             #[cfg(feature = "networks")]
             Drawn::Network(_) => None,
+        }
+    }
+
+    /// Whether a size is decoded.
+    pub(super) fn has_size(&self, ppem: f32) -> bool {
+        match &self.drawn {
+            Drawn::Outlines(outlines) => outlines.parts.iter().all(|(model, _)| {
+                let size = model.scale.at(ppem);
+                size.strength == 0.0 || model.has_size(size.index)
+            }),
+            _ => true,
+        }
+    }
+
+    /// How much wider the hinted advance width is than the scaled one, rounded, at a trained size: in whole pixels. None for a
+    /// glyph that has no such widths.
+    pub(super) fn hinted_advance(&self, size: &HintedSize) -> Option<i8> {
+        match &self.drawn {
+            Drawn::Outlines(outlines) if size.strength > 0.0 => {
+                Some(outlines.advances.get(size.index).copied().unwrap_or(0))
+            }
+            _ => None,
         }
     }
 
@@ -59,7 +112,7 @@ impl Glyph {
     #[cfg(feature = "networks")]
     pub fn network(&self) -> Option<&Network> {
         match &self.drawn {
-            Drawn::Parts(_) => None,
+            Drawn::Outlines(_) | Drawn::Fields(_) => None,
             Drawn::Network(network) => Some(network),
         }
     }
@@ -72,7 +125,15 @@ impl Glyph {
     pub fn placement(&self, options: impl Into<DrawOptions>) -> Result<Placement, Error> {
         let options = options.into().checked()?;
         let placement = match &self.drawn {
-            Drawn::Parts(parts) => {
+            Drawn::Outlines(_) => {
+                let mut found = Placement::default();
+                self.draw(options, &mut Scratch::default(), |placement| {
+                    found = placement;
+                    Ok(None)
+                })?;
+                found
+            }
+            Drawn::Fields(parts) => {
                 let mut whole = Placement::default();
                 for (model, origin) in parts {
                     let size = model.scale().at(options.ppem);
@@ -126,7 +187,16 @@ impl Glyph {
         };
         let mut budget = Budget::new(self.glyph, &self.limits);
         match &self.drawn {
-            Drawn::Parts(parts) => self.draw_parts(parts, options, scratch, &mut budget, room),
+            Drawn::Outlines(Outlines { parts, .. }) => {
+                let Some((first, _)) = parts.first() else {
+                    return Ok(room(Placement::default())?.map(|_| Placement::default()));
+                };
+                let size = first.scale.at(options.ppem);
+                let units = first.scale.units_per_em();
+                let parts = parts.iter().map(|(model, part)| (&**model, part.offset_at(&size, units)));
+                draw_outlines(parts, &size, options, scratch, &mut budget, room)
+            }
+            Drawn::Fields(parts) => self.draw_parts(parts, options, scratch, &mut budget, room),
             #[cfg(feature = "networks")]
             Drawn::Network(network) => network.draw(self.glyph, options, &mut budget, room),
         }
@@ -161,7 +231,13 @@ impl Glyph {
     /// them.
     pub fn memory(&self) -> usize {
         match &self.drawn {
-            Drawn::Parts(parts) => parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum(),
+            Drawn::Outlines(Outlines { parts, advances }) => {
+                let parts = parts.iter().map(|(model, part)| model.memory() + part.memory());
+                parts.sum::<usize>() + advances.len()
+            }
+            Drawn::Fields(parts) => {
+                parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum()
+            }
             #[cfg(feature = "networks")]
             Drawn::Network(network) => network.memory(),
         }
@@ -182,101 +258,4 @@ pub(super) fn fresh<'b>(
 fn position(origin: &Origin, size: &HintedSize, options: DrawOptions) -> [f32; 2] {
     let at = origin.at(size);
     [0, 1].map(|axis| at[axis] + options.offset[axis])
-}
-
-/// Decodes a font's glyphs, and keeps what composed glyphs share.
-#[derive(Debug)]
-pub struct Decoder {
-    font: Font,
-    limits: Limits,
-    /// The offsets that the parts of composed glyphs share; decoded with the first composed glyph.
-    offsets: Option<Vec<i8>>,
-}
-
-impl Decoder {
-    /// A decoder for a font's glyphs.
-    pub fn new(font: &Font, limits: Limits) -> Self {
-        Self { font: font.clone(), limits, offsets: None }
-    }
-
-    /// The font whose glyphs are decoded.
-    pub fn font(&self) -> &Font {
-        &self.font
-    }
-
-    pub(super) fn limits(&self) -> &Limits {
-        &self.limits
-    }
-
-    pub(super) fn set_limits(&mut self, limits: Limits) {
-        self.limits = limits;
-    }
-
-    /// Decodes a glyph.
-    ///
-    /// # Errors
-    ///
-    /// `NoSuchGlyph`, `MissingModel`; `MalformedModel` or `ModelTooLarge` if its bytes are damaged, `DecodedTooLarge`,
-    /// `NetworksNotBuilt`.
-    pub fn glyph(&mut self, glyph: u32) -> Result<Glyph, Error> {
-        self.glyph_with(glyph, |_| None)
-    }
-
-    /// Decodes a glyph. `known` gives the models that are decoded already, for the parts of composed glyphs.
-    pub(super) fn glyph_with(
-        &mut self,
-        glyph: u32,
-        known: impl Fn(u32) -> Option<Arc<GridFit>>,
-    ) -> Result<Glyph, Error> {
-        if glyph >= self.font.glyph_count() {
-            return Err(Error::NoSuchGlyph(glyph));
-        }
-        let (table, scale, limits) = (self.font.table()?, self.font.scale(), self.limits);
-        table.check_glyph(glyph)?;
-        let model = |part: u32| match known(part) {
-            Some(model) => Ok(model),
-            None => {
-                let weights = table.weights(part, scale, limits.decoded_bytes)?;
-                GridFit::new(&weights, scale).map(Arc::new).map_err(|damage| damage.of(part))
-            }
-        };
-        let drawn = if table.is_network(glyph) {
-            self::network(&table, glyph, &limits)?
-        } else if table.is_composed(glyph) {
-            let offsets = match self.offsets.take() {
-                Some(offsets) => offsets,
-                None => table.part_offsets(glyph, scale, limits.decoded_bytes)?,
-            };
-            let parts = table.parts(glyph, scale, &offsets);
-            self.offsets = Some(offsets);
-            let placed = parts?.into_iter().map(|part| {
-                let origin = Origin::new(&part, scale).map_err(|damage| damage.of(glyph))?;
-                Ok((model(part.gid.into())?, origin))
-            });
-            Drawn::Parts(placed.collect::<Result<_, Error>>()?)
-        } else {
-            Drawn::Parts(vec![(model(glyph)?, Origin::default())])
-        };
-        let decoded = Glyph { glyph, limits, drawn };
-        limits.check_decoded(glyph, decoded.memory())?;
-        Ok(decoded)
-    }
-}
-
-#[cfg(feature = "networks")]
-fn network(table: &crate::table::Table<'_>, glyph: u32, limits: &Limits) -> Result<Drawn, Error> {
-    let weights = table.network(glyph, limits.decoded_bytes)?;
-    Network::new(weights).map(|network| Drawn::Network(Arc::new(network))).map_err(|damage| damage.of(glyph))
-}
-
-#[cfg(not(feature = "networks"))]
-fn network(_: &crate::table::Table<'_>, glyph: u32, _: &Limits) -> Result<Drawn, Error> {
-    Err(Error::NetworksNotBuilt(glyph))
-}
-
-impl Font {
-    /// Decodes a glyph, with the default limits.
-    pub(crate) fn decode(&self, glyph: u32) -> Result<Glyph, Error> {
-        Decoder::new(self, Limits::default()).glyph(glyph)
-    }
 }

@@ -1,15 +1,22 @@
 //! From a font to pixels.
 
 mod area;
+mod decoder;
 mod draw;
+mod flatten;
 mod font;
 mod glyph;
 mod metrics;
 mod outline;
 mod rasterizer;
+mod scratch;
+mod stored_outline;
+mod strips;
 
-pub use draw::Scratch;
+pub use decoder::Decoder;
 pub use font::{Font, head_units, open};
-pub use glyph::{Decoder, Glyph};
+pub use glyph::Glyph;
 pub use metrics::LineMetrics;
 pub use rasterizer::Rasterizer;
+pub use scratch::Scratch;
+pub use stored_outline::{components, recode_outlines};

@@ -1,26 +1,45 @@
-//! Plain outlines, for glyphs that have no model: the font's own curves, flattened and filled with exact areas.
+//! Drawing outlines, with hints or without: they are hinted at a size, flattened and filled.
 
 use alloc::vec::Vec;
 
-use read_fonts::model::glyph::outline::{DrawMemory, DrawOptions as OutlineOptions, PathSink};
+use read_fonts::model::glyph::outline::DrawMemory;
 use read_fonts::types::GlyphId;
 
-use super::draw::{Scratch, draw_polygons};
+use super::area::Area;
+
+use super::flatten::Polygons;
 use super::font::Font;
+use super::scratch::Scratch;
+use super::strips::{STRIP, in_strips};
 use crate::bitmap::Canvas;
+use crate::constants::MAX_SIDE;
 use crate::error::Error;
 use crate::limits::{Budget, Limits};
-use crate::number::floor;
+use crate::model::outline::{OutlineModel, OutlinePoints, OutlineWeights, hint};
+use crate::model::sizes::HintedSize;
+use crate::number::{UNIT, UNIT_BITS, round};
 use crate::options::DrawOptions;
 use crate::placement::Placement;
 
-/// The largest distance (pixels) of a polygon from the curve that it approximates.
-const TOLERANCE: f32 = 1.0 / 128.0;
-/// The most edges that a curve becomes.
-const MAX_PIECES: u16 = 256;
+/// The outline of a glyph of a font.
+///
+/// # Errors
+///
+/// `NoSuchGlyph`, `MalformedOutline`.
+pub(super) fn outline_points(font: &Font, glyph: u32) -> Result<OutlinePoints, Error> {
+    if glyph >= font.glyph_count() {
+        return Err(Error::NoSuchGlyph(glyph));
+    }
+    // A blank glyph has an entry, too: no entry means that the outline cannot be read.
+    let outline = font.model().outline_glyphs().get(GlyphId::new(glyph));
+    let outline = outline.ok_or(Error::MalformedOutline(glyph))?;
+    let mut points = OutlinePoints::default();
+    outline.draw_unscaled(DrawMemory::default(), &mut points).map_err(|_| Error::MalformedOutline(glyph))?;
+    if points.is_unfit { Err(Error::MalformedOutline(glyph)) } else { Ok(points) }
+}
 
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.
-pub(super) fn draw_outline<'b>(
+pub(super) fn draw_plain<'b>(
     font: &Font,
     glyph: u32,
     options: DrawOptions,
@@ -29,147 +48,115 @@ pub(super) fn draw_outline<'b>(
     room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
 ) -> Result<Option<Placement>, Error> {
     let options = options.checked()?;
-    let Flattened { mut vertices, ends, .. } = flatten(font, glyph, options)?;
-    let placement = place(&vertices)?;
-    limits.check_sides(placement.width, placement.height)?;
-    let Some(mut canvas) = room(placement)? else { return Ok(None) };
-    orient(&mut vertices, &ends);
-    let (left, top) = (placement.left as f32, placement.top as f32);
-    let size = [placement.width as f32, placement.height as f32];
-    for [x, y] in &mut vertices {
-        [*x, *y] = [(*x - left).clamp(0.0, size[0]), (top - *y).clamp(0.0, size[1])];
-    }
+    let points = outline_points(font, glyph)?;
+    let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0);
+    let model = model.map_err(|damage| damage.of(glyph))?;
+    let size = HintedSize { strength: 0.0, ..font.scale().at(options.ppem) };
+    let room = |placement: Placement| {
+        limits.check_sides(placement.width, placement.height)?;
+        room(placement)
+    };
     let mut budget = Budget::new(glyph, limits);
+    draw_outlines(core::iter::once((&model, [0; 2])), &size, options, scratch, &mut budget, room)
+}
+
+/// Draws outlines, each moved by an offset in 1/64 pixel, into the canvas that `room` gives for the placement of all of them,
+/// if it gives one. Pixels are what they cover together.
+///
+/// # Errors
+///
+/// As `room`, `BitmapTooLarge`, and `TooMuchWork`.
+pub(super) fn draw_outlines<'m, 'b>(
+    models: impl Iterator<Item = (&'m OutlineModel, [i32; 2])>,
+    size: &HintedSize,
+    options: DrawOptions,
+    scratch: &mut Scratch,
+    budget: &mut Budget,
+    room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+) -> Result<Option<Placement>, Error> {
+    let Scratch { outline: points, polygons, .. } = scratch;
+    polygons.clear();
+    for (model, offset) in models {
+        hint(model, size, points);
+        check_reach(points, offset)?;
+        polygons.add(&model.points, points, offset);
+        if polygons.are_too_many() {
+            budget.spend(u64::MAX)?;
+        }
+    }
+    let offset = options.offset.map(|pixels| round(pixels * UNIT as f32));
+    let placement = place(polygons, offset)?;
+    let Some(mut canvas) = room(placement)? else { return Ok(None) };
     budget.spend(placement.area() as u64)?;
-    draw_polygons(&vertices, &ends, placement, scratch, &mut canvas, &mut budget)?;
+    to_corner(polygons, placement, offset);
+    in_strips::<STRIP>(placement, scratch, &mut canvas, |strip, scratch| {
+        let Scratch { area, polygons, .. } = scratch;
+        budget.spend(area.most_steps(polygons.vertices[0].len()))?;
+        if strip.is_whole {
+            fill::<false>(area, polygons);
+        } else {
+            let shift = strip.left.saturating_sub(placement.left).saturating_mul(UNIT);
+            polygons.vertices[0].iter_mut().for_each(|x| *x -= shift);
+            fill::<true>(area, polygons);
+            polygons.vertices[0].iter_mut().for_each(|x| *x += shift);
+        }
+        Ok(())
+    })?;
     Ok(Some(placement))
 }
 
-/// A glyph's outline at a size as polygons.
-fn flatten(font: &Font, glyph: u32, options: DrawOptions) -> Result<Flattened, Error> {
-    if glyph >= font.glyph_count() {
-        return Err(Error::NoSuchGlyph(glyph));
+/// Points reach so far from the origin at most, in 1/64 pixel: 262144 pixels.
+const MAX_REACH: u32 = 1 << 24;
+
+/// Checks that polygons can be computed in 32 bits.
+fn check_reach(points: &[Vec<i32>; 2], offset: [i32; 2]) -> Result<(), Error> {
+    let reach = |axis: usize| {
+        let points = points[axis].iter().fold(0, |reach, v| reach.max(v.unsigned_abs()));
+        points.saturating_add(offset[axis].unsigned_abs())
+    };
+    let [width, height] = [reach(0), reach(1)];
+    if width.max(height) <= MAX_REACH {
+        return Ok(());
     }
-    let mut flattened = Flattened { offset: options.offset, ..Flattened::default() };
-    // A blank glyph has an entry, too: no entry means that the outline cannot be read.
-    let outline = font.model().outline_glyphs().get(GlyphId::new(glyph));
-    let outline = outline.ok_or(Error::MalformedOutline(glyph))?;
-    let size = OutlineOptions::new().with_ppem(Some(options.ppem));
-    outline.draw(&size, DrawMemory::default(), &mut flattened).map_err(|_| Error::MalformedOutline(glyph))?;
-    flattened.close();
-    if flattened.vertices.iter().flatten().all(|v| v.is_finite()) {
-        Ok(flattened)
-    } else {
-        Err(Error::MalformedOutline(glyph))
+    Err(Error::BitmapTooLarge { width: width / 64, height: height / 64, limit: MAX_SIDE })
+}
+
+fn fill<const CLIP: bool>(area: &mut Area, polygons: &Polygons) {
+    let [x, y] = &polygons.vertices;
+    let mut start = 0;
+    for &end in &polygons.ends {
+        area.polygon::<CLIP>(&x[start..end], &y[start..end]);
+        start = end;
     }
 }
 
-/// The whole pixels that vertices span.
-fn place(vertices: &[[f32; 2]]) -> Result<Placement, Error> {
-    let Some(first) = vertices.first() else { return Ok(Placement::default()) };
-    let [mut low, mut high] = [*first; 2];
-    for vertex in vertices {
-        for axis in 0..2 {
-            low[axis] = low[axis].min(vertex[axis]);
-            high[axis] = high[axis].max(vertex[axis]);
-        }
+/// The whole pixels that polygons span if they are moved by `offset` units.
+fn place(polygons: &Polygons, offset: [i32; 2]) -> Result<Placement, Error> {
+    let range = |axis: usize| {
+        let vertices = &polygons.vertices[axis];
+        let (low, high) =
+            vertices.iter().fold((i32::MAX, i32::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+        let (low, high) = (low.saturating_add(offset[axis]), high.saturating_add(offset[axis]));
+        (low >> UNIT_BITS, high.saturating_add(UNIT - 1) >> UNIT_BITS)
+    };
+    if polygons.vertices[0].is_empty() {
+        return Ok(Placement::default());
     }
-    let [left, bottom] = low.map(floor);
-    let [right, top] = high.map(|v| floor(-v).saturating_neg());
+    let [(left, right), (bottom, top)] = [range(0), range(1)];
     if left == right || bottom == top {
         return Ok(Placement::default());
     }
-    Ok(Placement { left, top, width: right.abs_diff(left), height: top.abs_diff(bottom) })
+    let (width, height) = (right.abs_diff(left), top.abs_diff(bottom));
+    if width > MAX_SIDE || height > MAX_SIDE {
+        return Err(Error::BitmapTooLarge { width, height, limit: MAX_SIDE });
+    }
+    Ok(Placement { left, top, width, height })
 }
 
-/// Reverses all polygons if their inside is on their right, as in TrueType; PostScript has it on the left.
-fn orient(vertices: &mut [[f32; 2]], ends: &[usize]) {
-    let mut start = 0;
-    let mut area = 0.0;
-    for &end in ends {
-        let polygon = &vertices[start..end];
-        let next = polygon.iter().skip(1).chain(polygon.first());
-        area += polygon.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f32>();
-        start = end;
-    }
-    if area < 0.0 {
-        let mut start = 0;
-        for &end in ends {
-            vertices[start..end].reverse();
-            start = end;
-        }
-    }
-}
-
-/// Closed polygons in pixels, y up.
-#[derive(Default)]
-struct Flattened {
-    vertices: Vec<[f32; 2]>,
-    /// Where each polygon ends.
-    ends: Vec<usize>,
-    /// The subpixel offset, which is added to every point.
-    offset: [f32; 2],
-}
-
-impl Flattened {
-    fn at(&self, x: f32, y: f32) -> [f32; 2] {
-        [x + self.offset[0], y + self.offset[1]]
-    }
-
-    /// The current point of the path.
-    fn last(&self) -> [f32; 2] {
-        self.vertices.last().copied().unwrap_or(self.offset)
-    }
-
-    /// Adds the points at equal steps of a curve's parameter, its end included. `bend` bounds the curve's distance from its
-    /// chord.
-    fn pieces(&mut self, bend: f32, at: impl Fn(f32) -> [f32; 2]) {
-        // The distance falls with the square of the number of pieces.
-        let mut pieces = 1u16;
-        while f32::from(pieces) * f32::from(pieces) * TOLERANCE < bend && pieces < MAX_PIECES {
-            pieces += 1;
-        }
-        self.vertices.extend((1..=pieces).map(|piece| at(f32::from(piece) / f32::from(pieces))));
-    }
-}
-
-/// The longer side of the box around the second difference of three points.
-fn second_difference(a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> f32 {
-    [0, 1].map(|k| (a[k] - 2.0 * b[k] + c[k]).abs()).into_iter().fold(0.0, f32::max)
-}
-
-impl PathSink for Flattened {
-    fn move_to(&mut self, x: f32, y: f32) {
-        self.close();
-        self.vertices.push(self.at(x, y));
-    }
-
-    fn line_to(&mut self, x: f32, y: f32) {
-        self.vertices.push(self.at(x, y));
-    }
-
-    fn quad_to(&mut self, cx: f32, cy: f32, x: f32, y: f32) {
-        let (a, b, c) = (self.last(), self.at(cx, cy), self.at(x, y));
-        let curve = |t: f32| {
-            let s = 1.0 - t;
-            [0, 1].map(|k| s * s * a[k] + 2.0 * s * t * b[k] + t * t * c[k])
-        };
-        self.pieces(second_difference(a, b, c) / 4.0, curve);
-    }
-
-    fn curve_to(&mut self, cx0: f32, cy0: f32, cx1: f32, cy1: f32, x: f32, y: f32) {
-        let (a, b, c, d) = (self.last(), self.at(cx0, cy0), self.at(cx1, cy1), self.at(x, y));
-        let curve = |t: f32| {
-            let s = 1.0 - t;
-            [0, 1].map(|k| s * s * s * a[k] + 3.0 * s * t * (s * b[k] + t * c[k]) + t * t * t * d[k])
-        };
-        let bend = second_difference(a, b, c).max(second_difference(b, c, d));
-        self.pieces(0.75 * bend, curve);
-    }
-
-    fn close(&mut self) {
-        if self.ends.last().copied().unwrap_or(0) < self.vertices.len() {
-            self.ends.push(self.vertices.len());
-        }
-    }
+/// Makes coordinates those from the placement's upper left corner, y down.
+fn to_corner(polygons: &mut Polygons, placement: Placement, offset: [i32; 2]) {
+    let (left, top) = (placement.left * UNIT - offset[0], placement.top * UNIT - offset[1]);
+    let [x, y] = &mut polygons.vertices;
+    x.iter_mut().for_each(|x| *x -= left);
+    y.iter_mut().for_each(|y| *y = top - *y);
 }

@@ -2,13 +2,16 @@
 
 use alloc::vec::Vec;
 
-use super::draw::Scratch;
+use super::decoder::Decoder;
 use super::font::Font;
-use super::glyph::{Decoder, Glyph, fresh};
-use super::outline::draw_outline;
+use super::glyph::{Glyph, fresh};
+use super::outline::draw_plain;
+use super::scratch::Scratch;
 use crate::bitmap::{Bitmap, BitmapRef, Canvas};
 use crate::error::Error;
 use crate::limits::{Limits, MissingModel};
+use crate::model::outline::scale_of;
+use crate::number::mul_fixed;
 use crate::options::DrawOptions;
 use crate::placement::Placement;
 
@@ -90,6 +93,27 @@ impl Rasterizer {
             Ok(None)
         })?;
         Ok(placement)
+    }
+
+    /// The hinted advance width in pixels, as the teacher's interpreter gives it: a whole number at the trained sizes, and
+    /// [`Font::advance`] at others and for glyphs whose models do not know it (fields, networks, missing models).
+    ///
+    /// # Errors
+    ///
+    /// `NoSuchGlyph`, `InvalidSize`, and those of a damaged model.
+    pub fn hinted_advance(&mut self, glyph: u32, ppem: f32) -> Result<f32, Error> {
+        DrawOptions::new(ppem).checked()?;
+        let size = self.decoder.font().scale().at(ppem);
+        let more = match self.cache.get(&mut self.decoder, glyph, ppem) {
+            Ok(decoded) => decoded.hinted_advance(&size),
+            Err(Error::MissingModel(missing)) if missing == glyph => None,
+            Err(error) => return Err(error),
+        };
+        let font = self.decoder.font();
+        let Some(more) = more else { return Ok(font.advance(glyph, ppem)) };
+        let scaled =
+            mul_fixed(font.advance_units(glyph).into(), scale_of(size.trained_ppem, font.units_per_em()));
+        Ok((((scaled + 32) >> 6) + i32::from(more)) as f32)
     }
 
     /// Draws a glyph into a buffer of the rasterizer's own, and lends it until the next drawing.
@@ -178,7 +202,7 @@ impl Rasterizer {
         options: DrawOptions,
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
-        match self.cache.get(&mut self.decoder, glyph) {
+        match self.cache.get(&mut self.decoder, glyph, options.ppem) {
             Ok(decoded) => decoded.draw(options, &mut self.scratch, room),
             Err(error @ Error::MissingModel(missing)) if missing == glyph => match self.missing {
                 MissingModel::Error => Err(error),
@@ -189,7 +213,7 @@ impl Rasterizer {
                 }
                 MissingModel::Outline => {
                     let (font, limits) = (self.decoder.font(), self.decoder.limits());
-                    draw_outline(font, glyph, options, limits, &mut self.scratch, room)
+                    draw_plain(font, glyph, options, limits, &mut self.scratch, room)
                 }
             },
             Err(error) => Err(error),
@@ -217,11 +241,20 @@ struct Entry {
 }
 
 impl Cache {
-    fn get(&mut self, decoder: &mut Decoder, glyph: u32) -> Result<&Glyph, Error> {
+    /// The glyph, decoded for a size at least.
+    fn get(&mut self, decoder: &mut Decoder, glyph: u32, ppem: f32) -> Result<&Glyph, Error> {
         self.clock += 1;
         let at = match self.find(glyph) {
-            Some(at) => at,
-            None => self.load(decoder, glyph)?,
+            Some(at) if self.entries.get(at).is_some_and(|entry| entry.decoded.has_size(ppem)) => at,
+            // Whoever asks for a larger size may ask for more of them.
+            Some(at) => {
+                self.remove(at);
+                self.load(decoder, glyph, decoder.font().scale().sizes())?
+            }
+            None => {
+                let size = decoder.font().scale().at(ppem);
+                self.load(decoder, glyph, size.index + 1)?
+            }
         };
         let entry = self.entries.get_mut(at).ok_or(Error::NoSuchGlyph(glyph))?;
         entry.used = self.clock;
@@ -232,8 +265,9 @@ impl Cache {
         (*self.indices.get(glyph as usize)? as usize).checked_sub(1)
     }
 
-    fn load(&mut self, decoder: &mut Decoder, glyph: u32) -> Result<usize, Error> {
-        let decoded = decoder.glyph_with(glyph, |part| self.entries[self.find(part)?].decoded.model())?;
+    fn load(&mut self, decoder: &mut Decoder, glyph: u32, sizes: usize) -> Result<usize, Error> {
+        let decoded =
+            decoder.glyph_with(glyph, sizes, |part| self.entries[self.find(part)?].decoded.model())?;
         let bytes = decoded.memory();
         while self.bytes + bytes > self.limit && !self.entries.is_empty() {
             self.evict();
@@ -249,12 +283,17 @@ impl Cache {
 
     fn evict(&mut self) {
         let ages = self.entries.iter().enumerate();
-        let Some((oldest, _)) = ages.min_by_key(|(_, entry)| entry.used) else { return };
-        let entry = self.entries.swap_remove(oldest);
+        if let Some((oldest, _)) = ages.min_by_key(|(_, entry)| entry.used) {
+            self.remove(oldest);
+        }
+    }
+
+    fn remove(&mut self, at: usize) {
+        let entry = self.entries.swap_remove(at);
         self.bytes -= entry.decoded.memory();
         self.indices[entry.glyph as usize] = 0;
-        if let Some(moved) = self.entries.get(oldest) {
-            self.indices[moved.glyph as usize] = oldest as u32 + 1;
+        if let Some(moved) = self.entries.get(at) {
+            self.indices[moved.glyph as usize] = at as u32 + 1;
         }
     }
 }

@@ -20,14 +20,36 @@ const RATE: u32 = 4;
 pub struct ContextModel<'p, C> {
     /// Reads or writes the bins.
     pub coder: C,
-    prior: &'p Prior,
+    prior: Prior<'p>,
     slots: Vec<u16>,
 }
 
 impl<'p, C: Coder> ContextModel<'p, C> {
     /// A model in its initial state.
-    pub fn new(coder: C, prior: &'p Prior) -> Self {
-        Self { coder, prior, slots: prior.slots.to_vec() }
+    pub fn new(coder: C, prior: &Prior<'p>) -> Self {
+        Self { coder, prior: *prior, slots: prior.slots.to_vec() }
+    }
+
+    /// Goes back to the initial state, for another message.
+    pub fn forget(&mut self) {
+        self.slots.copy_from_slice(self.prior.slots);
+    }
+
+    /// The probability of a bin that is 1, in 1/4096, before it is coded.
+    pub(super) fn probability(&self, element: Element, contexts: [usize; 3], bin: usize) -> u32 {
+        let bin = bin.min(element.bins - 1);
+        let [a, b, _] = element.contexts;
+        if b == 0 {
+            let slot = element.first_slot + contexts[0] * element.bins + bin;
+            return u32::from(self.slots[slot] >> 4).clamp(1, ONE - 1);
+        }
+        let weights = self.prior.weights[element.first_mixer + bin];
+        let slots = [contexts[0], a + contexts[1], a + b + contexts[2]];
+        let terms = slots.into_iter().zip(weights).map(|(context, weight)| {
+            let slot = element.first_slot + context * element.bins + bin;
+            i32::from(STRETCH[usize::from(self.slots[slot] >> 4)]) * i32::from(weight)
+        });
+        squash((terms.sum::<i32>() + 16) >> 5).clamp(1, ONE - 1)
     }
 
     /// Codes one bin: its contexts' probabilities are mixed in the logistic domain.
@@ -107,6 +129,29 @@ impl<'p, C: Coder> ContextModel<'p, C> {
         let negative = self.bin(element, contexts, 1, value < 0);
         let size = self.positive(element, contexts, value.unsigned_abs()) as i32;
         if negative { size.wrapping_neg() } else { size }
+    }
+
+    /// Gives the probability, in 1/4096, of each bin of a number with its sign, without coding it.
+    pub(super) fn visit_signed(
+        &self,
+        element: Element,
+        contexts: [usize; 3],
+        value: i32,
+        visit: &mut dyn FnMut(u32),
+    ) {
+        let mut bin = |bin: usize, bit: bool| {
+            let probability = self.probability(element, contexts, bin);
+            visit(if bit { probability } else { ONE - probability });
+        };
+        bin(0, value != 0);
+        if value == 0 {
+            return;
+        }
+        bin(1, value < 0);
+        let length = value.unsigned_abs().ilog2();
+        (0..length).for_each(|k| bin(2 + k as usize, true));
+        bin(2 + length as usize, false);
+        (0..length).for_each(|_| visit(ONE / 2));
     }
 
     /// Codes a number that is at least 1.

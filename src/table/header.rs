@@ -8,7 +8,7 @@ use crate::target::Target;
 /// The table's tag.
 pub const TAG: Tag = Tag::new(b"Nfrt");
 /// The layout that this crate reads and writes. Readers refuse other major versions.
-pub const MAJOR_VERSION: u16 = 1;
+pub const MAJOR_VERSION: u16 = 2;
 /// Additions that older readers can ignore count this up. A table says what it has: this, or
 /// [`NETWORK_MINOR_VERSION`].
 pub const MINOR_VERSION: u16 = 0;
@@ -22,6 +22,8 @@ pub const BLOCK: usize = 64;
 pub const OUTLINES_DROPPED: u8 = 1;
 /// The flag that says that networks follow the grid offsets.
 pub const NETWORKS: u8 = 2;
+/// The flag that says that outline models follow the networks.
+pub const OUTLINE_MODELS: u8 = 4;
 /// The most parts of a composed glyph.
 pub const MAX_PARTS: usize = 16;
 /// The most bytes that the grid offsets of parts take, decoded.

@@ -9,6 +9,7 @@ mod gids;
 mod header;
 pub mod logistic;
 mod network_index;
+pub mod outline;
 pub mod part_offsets;
 mod planes;
 pub mod priors;

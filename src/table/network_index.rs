@@ -20,8 +20,8 @@ fn truncated(offset: usize) -> Error {
 }
 
 impl<'a> NetworkIndex<'a> {
-    /// Finds the arrays, which begin with their count at `at`.
-    pub(super) fn parse(data: FontData<'a>, at: usize) -> Result<Self, Error> {
+    /// Finds the arrays, which begin with their count at `at`. Says where they end, too.
+    pub(super) fn parse(data: FontData<'a>, at: usize) -> Result<(Self, usize), Error> {
         let count = usize::from(data.read_at::<u16>(at).map_err(|_| truncated(at))?);
         let after = |at: usize, length: usize| at.checked_add(length).ok_or_else(|| truncated(at));
         let gids_at = after(at, 2)?;
@@ -29,11 +29,12 @@ impl<'a> NetworkIndex<'a> {
         let payload_at = after(ends_at, 4 * count)?;
         let ends: &[BigEndian<u32>] = data.read_array(ends_at..payload_at).map_err(|_| truncated(ends_at))?;
         let end = after(payload_at, ends.last().map_or(0, |end| end.get() as usize))?;
-        Ok(Self {
+        let index = Self {
             gids: data.read_array(gids_at..ends_at).map_err(|_| truncated(gids_at))?,
             ends,
             payload: data.as_bytes().get(payload_at..end).ok_or_else(|| truncated(payload_at))?,
-        })
+        };
+        Ok((index, end))
     }
 
     pub(super) fn gids(&self) -> &'a [BigEndian<u16>] {

@@ -1,43 +1,50 @@
-//! The initial state of context models: probabilities and mixer weights trained on fonts, kept in `spec/priors.txt`.
+//! The initial state of context models: probabilities and mixer weights trained on fonts, kept in `spec/priors.txt` and
+//! `spec/outline-priors.txt`.
 
-use super::elements::{MIXERS, SLOTS};
+use super::elements::{MIXERS, OUTLINE_MIXERS, OUTLINE_SLOTS, SLOTS};
 use super::logistic::squash;
 
 /// The initial probability of each slot and the weights of each mixer.
-#[derive(Debug, Clone)]
-pub struct Prior {
+#[derive(Debug, Clone, Copy)]
+pub struct Prior<'a> {
     /// The probability of each slot, in 1/65536.
-    pub slots: [u16; SLOTS],
+    pub slots: &'a [u16],
     /// The weights of each mixer, in 1/32.
-    pub weights: [[u8; 3]; MIXERS],
+    pub weights: &'a [[u8; 3]],
 }
-
-/// The table of the specification: a character for each slot, then three for each mixer; 64 characters from `0`
-/// on stand for 0 to 63.
-const TEXT: &[u8] = include_bytes!("../../spec/priors.txt");
 
 /// The first of the 64 characters.
 pub const DIGIT: u8 = b'0';
 
-/// The priors that the format prescribes.
-pub static PRIOR: Prior = {
-    let mut prior = Prior { slots: [1 << 15; SLOTS], weights: [[13; 3]; MIXERS] };
+/// The priors that the format prescribes for fields.
+pub static PRIOR: Prior<'static> = Prior { slots: &FIELDS.0, weights: &FIELDS.1 };
+/// Those of outlines.
+pub static OUTLINE_PRIOR: Prior<'static> = Prior { slots: &OUTLINES.0, weights: &OUTLINES.1 };
+
+static FIELDS: ([u16; SLOTS], [[u8; 3]; MIXERS]) = parse(include_bytes!("../../spec/priors.txt"));
+static OUTLINES: ([u16; OUTLINE_SLOTS], [[u8; 3]; OUTLINE_MIXERS]) =
+    parse(include_bytes!("../../spec/outline-priors.txt"));
+
+/// Reads a table of the specification: a character for each slot, then three for each mixer; 64 characters from `0`
+/// on stand for 0 to 63.
+const fn parse<const S: usize, const M: usize>(text: &[u8]) -> ([u16; S], [[u8; 3]; M]) {
+    let (mut slots, mut weights) = ([1 << 15; S], [[13; 3]; M]);
     let (mut at, mut number) = (0, 0);
-    while at < TEXT.len() {
-        if TEXT[at] >= DIGIT {
-            let value = TEXT[at] - DIGIT;
-            if number < SLOTS {
-                prior.slots[number] = probability(value);
+    while at < text.len() {
+        if text[at] >= DIGIT {
+            let value = text[at] - DIGIT;
+            if number < S {
+                slots[number] = probability(value);
             } else {
-                prior.weights[(number - SLOTS) / 3][(number - SLOTS) % 3] = value;
+                weights[(number - S) / 3][(number - S) % 3] = value;
             }
             number += 1;
         }
         at += 1;
     }
-    assert!(number == SLOTS + 3 * MIXERS, "spec/priors.txt does not fit the contexts; train it again");
-    prior
-};
+    assert!(number == S + 3 * M, "a table of priors does not fit the contexts; train it again");
+    (slots, weights)
+}
 
 /// The probability that a digit of the table stands for.
 pub const fn probability(digit: u8) -> u16 {

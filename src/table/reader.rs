@@ -8,9 +8,11 @@ use read_fonts::types::BigEndian;
 use super::composed::ComposedGlyphs;
 use super::gids::{Gids, find, outside};
 use super::header::{
-    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, NETWORKS, OUTLINES_DROPPED,
+    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, NETWORKS, OUTLINE_MODELS,
+    OUTLINES_DROPPED,
 };
 use super::network_index::NetworkIndex;
+use super::outline::{self, OutlineIndex};
 use super::{codec, part_offsets};
 use crate::constants::MAX_TRAINED_PPEM;
 use crate::error::Error;
@@ -32,6 +34,7 @@ pub struct Table<'a> {
     blocks: &'a [BigEndian<u32>],
     composed: ComposedGlyphs<'a>,
     networks: NetworkIndex<'a>,
+    outlines: OutlineIndex<'a>,
     payload: &'a [u8],
 }
 
@@ -88,7 +91,15 @@ impl<'a> Table<'a> {
         let payload_at = blocks_at + 4 * count.div_ceil(BLOCK);
         let composed_at = payload_at.checked_add(payload_len).ok_or_else(|| truncated(payload_at))?;
         let (composed, networks_at) = ComposedGlyphs::parse(data, composed_at)?;
-        let has_networks = u8_at(5)? & NETWORKS != 0;
+        let flags = u8_at(5)?;
+        let (networks, outlines_at) = match flags & NETWORKS {
+            0 => (NetworkIndex::default(), networks_at),
+            _ => NetworkIndex::parse(data, networks_at)?,
+        };
+        let outlines = match flags & OUTLINE_MODELS {
+            0 => OutlineIndex::default(),
+            _ => OutlineIndex::parse(data, outlines_at)?,
+        };
         let table = Self {
             header,
             len: bytes.len(),
@@ -97,11 +108,8 @@ impl<'a> Table<'a> {
             blocks: data.read_array(blocks_at..payload_at).map_err(|_| truncated(blocks_at))?,
             payload: bytes.get(payload_at..composed_at).ok_or_else(|| truncated(payload_at))?,
             composed,
-            networks: if has_networks {
-                NetworkIndex::parse(data, networks_at)?
-            } else {
-                NetworkIndex::default()
-            },
+            networks,
+            outlines,
         };
         Ok(table)
     }
@@ -116,24 +124,38 @@ impl<'a> Table<'a> {
         self.len
     }
 
-    /// The glyphs that can be drawn, ascending: with a model of their own, composed of others, or with a network.
+    /// The glyphs that can be drawn, ascending: with a model of their own, composed of others, or with
+    /// a network.
     pub fn gids(&self) -> Gids<'a> {
-        Gids::new([self.gids, self.composed.gids(), self.networks.gids()])
+        Gids::new([self.gids, self.composed.gids(), self.networks.gids()], self.outlines.ranges())
     }
 
     /// The glyphs that have a network, ascending.
     pub fn network_gids(&self) -> Gids<'a> {
-        Gids::new([&[], &[], self.networks.gids()])
+        Gids::new([&[], &[], self.networks.gids()], &[])
+    }
+
+    /// The outline models.
+    pub fn outlines(&self) -> &OutlineIndex<'a> {
+        &self.outlines
+    }
+
+    /// The glyphs that have a field of their own, ascending.
+    pub fn field_gids(&self) -> Gids<'a> {
+        Gids::new([self.gids, &[], &[]], &[])
     }
 
     /// Whether a glyph can be drawn.
     pub fn contains(&self, gid: u32) -> bool {
-        self.find(gid).is_some() || self.is_composed(gid) || self.is_network(gid)
+        self.find(gid).is_some()
+            || self.composed.find(gid).is_some()
+            || self.is_network(gid)
+            || self.outlines.find(gid).is_some()
     }
 
     /// Whether a glyph is composed of the models of others.
     pub fn is_composed(&self, gid: u32) -> bool {
-        self.composed.find(gid).is_some()
+        self.composed.find(gid).is_some() || self.outlines.glyph(gid).is_ok_and(outline::is_composed)
     }
 
     /// Whether a glyph has a network.
@@ -147,9 +169,15 @@ impl<'a> Table<'a> {
     ///
     /// `MissingModel` if the glyph is not in the table, `MalformedModel` if it is there in two ways.
     pub fn check_glyph(&self, gid: u32) -> Result<(), Error> {
-        match [self.find(gid).is_some(), self.is_composed(gid), self.is_network(gid)].map(u8::from) {
-            [0, 0, 0] => Err(Error::MissingModel(gid)),
-            [1, 0, 0] | [0, 1, 0] | [0, 0, 1] => Ok(()),
+        let ways = [
+            self.find(gid).is_some(),
+            self.composed.find(gid).is_some(),
+            self.is_network(gid),
+            self.outlines.find(gid).is_some(),
+        ];
+        match ways.into_iter().filter(|way| *way).count() {
+            0 => Err(Error::MissingModel(gid)),
+            1 => Ok(()),
             _ => Err(Error::MalformedModel { glyph: gid, what: "is in the table twice" }),
         }
     }
@@ -175,6 +203,9 @@ impl<'a> Table<'a> {
     ///
     /// `MissingModel`, or `MalformedModel` for an entry that points nowhere.
     pub fn model_len(&self, gid: u32) -> Result<usize, Error> {
+        if self.outlines.find(gid).is_some() {
+            return self.outlines.glyph(gid).map(<[u8]>::len);
+        }
         match (self.networks.find(gid), self.composed.find(gid)) {
             (Some(index), _) => self.networks.packed(index).map(<[u8]>::len),
             (None, Some(index)) => self.composed.len_of(index),

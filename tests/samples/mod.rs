@@ -48,5 +48,7 @@ pub(crate) fn without_models(data: &[u8]) -> Vec<u8> {
     for range in [10..12, 28..32, 40..52] {
         header[range].fill(0);
     }
+    // Neither networks nor outline models follow.
+    header[5] &= 1;
     with_table(data, b"Nfrt", Some(&header))
 }

@@ -4,12 +4,13 @@ use std::sync::LazyLock;
 
 use crate::error::Error;
 use nfr::internals::model::gridfit::{Scale, Weights};
+use nfr::internals::recode_outlines;
 use nfr::internals::table::codec::{self, Section};
 use nfr::internals::table::priors::{DIGIT, PRIOR, Prior, probability};
 use nfr::internals::table::range::{Coder, ONE};
 use nfr::internals::table::{
     context_model::ContextModel,
-    elements::{MIXERS, SLOTS},
+    elements::{MIXERS, OUTLINE_MIXERS, OUTLINE_SLOTS, SLOTS},
 };
 
 /// The bits that a glyph's weights take in the table.
@@ -89,19 +90,23 @@ pub(crate) fn section_bits(weights: &mut Weights, scale: Scale, section: Section
 }
 
 /// Epochs; later ones change nothing.
-const EPOCHS: usize = 4;
+const EPOCHS: usize = 24;
 /// The learning rate of a mixture's weights: per unit of a context's stretched probability and of the error.
 const MIXING_RATE: f64 = 4e-9;
+/// Where a mixture is used more often than this, the mean of its gradients counts so many times.
+const MOST_MIXED: f64 = 1_000.0;
 /// The pseudo-count of ones and of zeros in every slot (additive smoothing).
 const PSEUDO_COUNT: f64 = 0.4;
 /// Digits in a line of the table.
 const LINE: usize = 96;
 
 /// Counts the decisions of each slot and accumulates the gradient of the mixtures' weights, as in lpaq.
-struct Learner {
+pub struct Learner {
     ones: Vec<f64>,
     all: Vec<f64>,
     gradients: Vec<[f64; 3]>,
+    /// How often each mixer is used.
+    mixed: Vec<f64>,
 }
 
 impl Coder for Learner {
@@ -112,12 +117,13 @@ impl Coder for Learner {
     }
 
     fn observe(&mut self, slots: [usize; 3], stretched: [i32; 3], mix: usize, probability: u32, bit: bool) {
-        let mixed = mix < MIXERS;
+        let mixed = mix < self.gradients.len();
         for slot in &slots[..if mixed { 3 } else { 1 }] {
             self.all[*slot] += 1.0;
             self.ones[*slot] += f64::from(u8::from(bit));
         }
         if mixed {
+            self.mixed[mix] += 1.0;
             let error = f64::from(if bit { ONE } else { 0 }) - f64::from(probability);
             for (gradient, stretched) in self.gradients[mix].iter_mut().zip(stretched) {
                 *gradient += MIXING_RATE * error * f64::from(stretched);
@@ -126,34 +132,65 @@ impl Coder for Learner {
     }
 }
 
-/// Learns the table of priors, in the format of `spec/priors.txt`, from fonts: the scale and the glyphs' weights of each.
-/// `examples/priors.rs` calls it.
+/// Learns the table of priors of fields, in the format of `spec/priors.txt`, from fonts: the scale and the glyphs' weights of
+/// each. `examples/priors.rs` calls it.
 ///
 /// # Errors
 ///
 /// As [`cost`].
 pub fn learn_priors(fonts: &[(Scale, Vec<Weights>)]) -> Result<String, Error> {
-    let mut prior = Prior { slots: [1 << 15; SLOTS], weights: [[0; 3]; MIXERS] };
-    let mut digits = [32; SLOTS];
-    let mut weights = [[0.4; 3]; MIXERS];
-    for _ in 0..EPOCHS {
-        let (mut ones, mut all) = (vec![0.0; SLOTS], vec![0.0; SLOTS]);
-        for (scale, glyph) in fonts.iter().flat_map(|(scale, glyphs)| glyphs.iter().map(move |g| (*scale, g)))
-        {
-            prior.weights = weights.map(|mix| mix.map(weight_digit));
-            let learner = Learner { ones, all, gradients: vec![[0.0; 3]; MIXERS] };
-            let mut model = ContextModel::new(learner, &prior);
-            codec::code(&mut model, &mut glyph.clone(), scale, |_, _| ())?;
-            let Learner { ones: seen_ones, all: seen, gradients } = model.coder;
-            (ones, all) = (seen_ones, seen);
-            for (weight, by) in weights.iter_mut().flatten().zip(gradients.iter().flatten()) {
-                *weight += by;
-            }
+    learn(SLOTS, MIXERS, |model| {
+        let glyphs = fonts.iter().flat_map(|(scale, glyphs)| glyphs.iter().map(move |glyph| (*scale, glyph)));
+        for (scale, glyph) in glyphs {
+            model.forget();
+            codec::code(model, &mut glyph.clone(), scale, |_, _| ())?;
         }
-        for (slot, digit) in digits.iter_mut().enumerate() {
-            let share = (ones[slot] + PSEUDO_COUNT) / (all[slot] + 2.0 * PSEUDO_COUNT);
-            *digit = probability_digit(share);
-            prior.slots[slot] = probability(*digit);
+        Ok(())
+    })
+}
+
+/// Learns the table of priors of outlines, `spec/outline-priors.txt`, from converted fonts.
+///
+/// # Errors
+///
+/// Those of damaged models.
+pub fn learn_outline_priors(fonts: &[nfr::Font]) -> Result<String, Error> {
+    learn(OUTLINE_SLOTS, OUTLINE_MIXERS, |model| {
+        fonts.iter().try_for_each(|font| Ok(recode_outlines(font, model)?))
+    })
+}
+
+/// Learns a table of priors from everything that `code` codes; before each message it lets the model forget what it has adapted
+/// to.
+///
+/// # Errors
+///
+/// Those of `code`.
+pub fn learn(
+    slots: usize,
+    mixers: usize,
+    code: impl Fn(&mut ContextModel<'_, Learner>) -> Result<(), Error>,
+) -> Result<String, Error> {
+    let mut digits = vec![32; slots];
+    let mut weights = vec![[0.4; 3]; mixers];
+    for _ in 0..EPOCHS {
+        let probabilities: Vec<u16> = digits.iter().map(|digit| probability(*digit)).collect();
+        let steps: Vec<[u8; 3]> = weights.iter().map(|mix| mix.map(weight_digit)).collect();
+        let learner = Learner {
+            ones: vec![0.0; slots],
+            all: vec![0.0; slots],
+            gradients: vec![[0.0; 3]; mixers],
+            mixed: vec![0.0; mixers],
+        };
+        let mut model = ContextModel::new(learner, &Prior { slots: &probabilities, weights: &steps });
+        code(&mut model)?;
+        let Learner { ones, all, gradients, mixed } = model.coder;
+        for (weights, (gradients, uses)) in weights.iter_mut().zip(gradients.iter().zip(&mixed)) {
+            let share = (MOST_MIXED / uses.max(1.0)).min(1.0);
+            weights.iter_mut().zip(gradients).for_each(|(weight, by)| *weight += by * share);
+        }
+        for (digit, (ones, all)) in digits.iter_mut().zip(ones.iter().zip(&all)) {
+            *digit = probability_digit((ones + PSEUDO_COUNT) / (all + 2.0 * PSEUDO_COUNT));
         }
     }
     let weights = weights.into_iter().flatten().map(weight_digit);

@@ -61,6 +61,7 @@ impl From<nfr::Error> for Error {
             }
             Cause::NotConverted => Self::Unsupported(format!("{error}; make one with nfr-convert")),
             Cause::UnknownVersion { .. } => Self::Unsupported(again()),
+            Cause::StaleModel(_) => Self::InvalidParameter(again()),
             Cause::MalformedModels { .. } | Cause::MalformedModel { .. } => Self::Malformed(again()),
             Cause::ModelTooLarge { .. } => Self::LimitExceeded(again()),
             Cause::BitmapTooLarge { .. } | Cause::DecodedTooLarge { .. } | Cause::TooMuchWork { .. } => {
@@ -86,6 +87,7 @@ impl From<Damage> for Error {
     fn from(damage: Damage) -> Self {
         match damage {
             Damage::Malformed(what) => Self::Malformed(format!("a model {what}")),
+            Damage::Stale => Self::InvalidParameter("a model belongs to another outline".into()),
             Damage::TooLarge { what, count, limit } => {
                 Self::LimitExceeded(format!("a model has {count} {what}, {limit} are allowed"))
             }

@@ -1,6 +1,6 @@
 //! From a hinted font to a neural one. The stages, in order: `input`, `teacher`, `training_samples`, `predict` (sizes that
-//! the teacher does not draw), `compose` (glyphs made of other glyphs' models), `fit` (initial models), `train`, `refine`
-//! (rate–distortion refinement of the integers), `writer` and `assemble`; `pipeline` runs them. Each stage's output is a
+//! the teacher does not draw), `compose` (glyphs made of other glyphs' models), then either `outline` (outline models, in closed
+//! form) or `fit` (initial fields), `train` and `refine` (rate–distortion refinement of the integers), `writer` and `assemble`; `pipeline` runs them. Each stage's output is a
 //! plain type that the next one takes.
 
 #![forbid(unsafe_code)]
@@ -17,6 +17,7 @@ pub mod fit;
 mod fixtures;
 mod input;
 pub mod options;
+mod outline;
 mod parallel;
 pub mod partial;
 mod pipeline;
@@ -34,7 +35,7 @@ pub mod writer;
 pub use conversion::{Conversion, GlyphReport, Progress};
 pub use error::Error;
 pub use input::{open, ppem, select};
-pub use options::{Options, Quality};
+pub use options::{Options, Quality, Shape};
 pub use pipeline::{convert, resume};
 
 /// Runs the examples of the README as tests.

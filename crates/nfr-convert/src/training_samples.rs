@@ -24,6 +24,8 @@ pub struct TrainingSample {
     pub ppem: u16,
     /// The hinted outline's coordinates in pixels, in the order of those of the unhinted outline.
     pub points: Vec<[f32; 2]>,
+    /// The hinted advance width in whole pixels; none where it is not known.
+    pub advance: Option<i32>,
     /// The exact coverage of the hinted outline.
     pub bitmap: Bitmap,
     /// Whether hinting was predicted from other sizes, not drawn by the teacher.
@@ -37,7 +39,7 @@ impl GlyphSamples {
         let unhinted = |ppem: u16| {
             let points: Vec<_> = self.outline.points.iter().map(|p| p.map(|v| v * f32::from(ppem))).collect();
             let bitmap = self.outline.with_points(&points)?.rasterize()?;
-            Ok(TrainingSample { ppem, points, bitmap, predicted: false })
+            Ok(TrainingSample { ppem, points, advance: None, bitmap, predicted: false })
         };
         [last + last.div_ceil(2), last * 2].map(unhinted).into_iter().collect()
     }
@@ -71,7 +73,9 @@ impl GlyphSamples {
                         at.ppem()
                     )));
                 }
-                Ok(TrainingSample { ppem: at.ppem(), points: hinted.points, bitmap, predicted: false })
+                let advance = hinted.advance.map(|pixels| pixels.round() as i32);
+                let points = hinted.points;
+                Ok(TrainingSample { ppem: at.ppem(), points, advance, bitmap, predicted: false })
             })
             .collect::<Result<_, _>>()?;
         Ok(Self { gid, outline, hint_error, sizes })

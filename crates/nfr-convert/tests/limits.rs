@@ -6,7 +6,7 @@ mod samples;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nfr_convert::options::Capacity;
-use nfr_convert::{Conversion, Error, Options, Progress, convert};
+use nfr_convert::{Conversion, Error, Options, Progress, Shape, convert};
 use read_fonts::tables::glyf::{CurvePoint, Glyph};
 use read_fonts::types::Tag;
 use read_fonts::{FontRef, TableProvider};
@@ -79,7 +79,8 @@ fn with_units(units: u16) -> Vec<u8> {
 }
 
 fn options(font: &[u8]) -> Options {
-    let mut options = Options { gids: gids(font, "BRags&"), ppem: 8..=40, ..Options::default() };
+    let mut options =
+        Options { gids: gids(font, "BRags&"), ppem: 8..=40, shape: Shape::Field, ..Options::default() };
     options.schedule.steps = 4;
     options.refinement.rounds = 0;
     options

@@ -7,7 +7,7 @@ mod samples;
 use nfr::{Font, Rasterizer, Target};
 use nfr_convert::compare::metrics::{Figures, Sums};
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Options, Quality, convert};
+use nfr_convert::{Options, Quality, Shape, convert};
 use read_fonts::FontRef;
 
 use samples::{Silent, font, gids};
@@ -33,7 +33,7 @@ struct Measured {
 }
 
 fn options(data: &[u8], text: &str, target: Target, steps: usize) -> Options {
-    let mut options = Options { gids: gids(data, text), target, ..Options::default() };
+    let mut options = Options { gids: gids(data, text), target, shape: Shape::Field, ..Options::default() };
     options.schedule.steps = steps;
     options.refinement.rounds = 1;
     options

@@ -213,7 +213,7 @@ fn compare_placement(twin: &Twin<'_>, place: Placement, what: &str) {
     }
 }
 
-/// Differences in 1/255 of full coverage.
+/// Differences in 1/256 of full coverage. A level stands for all coverage from so many 256ths up to the next.
 #[derive(Debug, Default, Clone, Copy)]
 struct Differences {
     largest: f64,
@@ -224,7 +224,8 @@ struct Differences {
 impl Differences {
     fn add(&mut self, pixels: &[u8], twin: &[f64]) {
         for (ours, twin) in pixels.iter().zip(twin) {
-            let difference = (f64::from(*ours) - twin).abs();
+            let (level, coverage) = (f64::from(*ours), twin * 256.0 / 255.0);
+            let difference = (level - coverage).max(coverage - level - 1.0).max(0.0);
             self.largest = self.largest.max(difference);
             self.sum += difference;
             self.pixels += 1.0;

@@ -9,7 +9,7 @@ use super::network_variant::{Ablation, GRID_FIT, NetworkVariant};
 use super::truth::TruthSize;
 use nfr::{Font, Rasterizer};
 use nfr_convert::error::Error;
-use nfr_convert::{Options, Progress, convert};
+use nfr_convert::{Options, Progress, Shape, convert};
 
 /// Trains a network on a glyph, or takes a finished training from its checkpoint.
 ///
@@ -101,8 +101,14 @@ pub fn grid_fit_font(
     let mut gids: Vec<u16> = glyphs.iter().map(|(_, gid)| *gid).collect();
     gids.sort_unstable();
     gids.dedup();
-    let options =
-        Options { gids, ppem: first..=last, jobs: context.jobs, compose: false, ..Options::default() };
+    let options = Options {
+        gids,
+        ppem: first..=last,
+        jobs: context.jobs,
+        compose: false,
+        shape: Shape::Field,
+        ..Options::default()
+    };
     Ok(convert(&dataset.data, &options, &Silent)?.font)
 }
 

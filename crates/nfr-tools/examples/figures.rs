@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release --example figures [-- OPTIONS] [FONT.ttf ...]`: printable ASCII at 8–64 ppem; without fonts,
 //! the three that README speaks of. `--quality 0,25,50,75,100` prints a line for each of these settings, and
-//! `--target mono` hints in x too. `--train-ppem 8-64:2` learns from these sizes alone and measures the error at the others.
+//! `--target mono` hints in x too, and
+//! `--shape field` trains fields. `--train-ppem 8-64:2` learns from these sizes alone and measures the error at the others.
 //! The error is measured on the finished files; the last but one column is against the plain outline, at sizes above
 //! the trained ones.
 
@@ -18,7 +19,7 @@ use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::ppem::PpemList;
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Options, Progress, Quality, convert};
+use nfr_convert::{Options, Progress, Quality, Shape, convert};
 
 const FONTS: [&str; 3] =
     ["fonts/LiberationSans-Regular.ttf", "fonts/LiberationSerif-Regular.ttf", "fonts/DejaVuSans.ttf"];
@@ -33,6 +34,9 @@ struct Args {
     /// What to hint for
     #[arg(long, default_value_t, value_parser = nfr_tools::target)]
     target: Target,
+    /// Where models have their shapes from
+    #[arg(long, default_value = "auto", value_parser = nfr_tools::shape)]
+    shape: Shape,
     /// The sizes to learn
     #[arg(long, default_value = "8-64")]
     train_ppem: PpemList,
@@ -78,6 +82,7 @@ fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>>
         gids: selection.resolve(&font, [])?,
         jobs,
         target: args.target,
+        shape: args.shape,
         ppem: ppem.clone(),
         ppem_step,
         ..Options::default().with_quality(Quality::new(quality).ok_or("a quality is 0 to 100")?)
@@ -99,7 +104,7 @@ fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>>
     let small = report.bands.first().map_or(0.0, |b| b.compared.neural.figures.mae);
     let large = large_size_mae(&Teacher::new(&font, args.target)?, &conversion.font, &options.gids)?;
     Ok(format!(
-        "| {path} | {quality} | {:.4} ({:.4}) | {:.2} % ({:.1} %) | {small:.4} | {worst:.4} | {:.0} | {large:.4} | {seconds:.0} s |",
+        "| {path} | {quality} | {:.5} ({:.4}) | {:.3} % ({:.1} %) | {small:.5} | {worst:.5} | {:.1} | {large:.5} | {seconds:.1} s |",
         neural.mae,
         unhinted.mae,
         100.0 * neural.bad16,

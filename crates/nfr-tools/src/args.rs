@@ -7,6 +7,7 @@ use clap::Args;
 use super::failure::Failure;
 use super::files::read;
 use nfr::Target;
+use nfr_convert::Shape;
 use nfr_convert::select::{CodePoints, GlyphIds, GlyphNames, Selection};
 
 const HEADING: &str = "Glyphs (all that is given adds up)";
@@ -18,6 +19,20 @@ const HEADING: &str = "Glyphs (all that is given adds up)";
 /// A sentence for any other word.
 pub fn target(name: &str) -> Result<Target, String> {
     Target::from_name(name).ok_or_else(|| format!("unknown target {name:?}; use smooth, mono or lcd"))
+}
+
+/// Reads the name of a shape.
+///
+/// # Errors
+///
+/// A sentence for any other word.
+pub fn shape(name: &str) -> Result<Shape, String> {
+    match name {
+        "auto" => Ok(Shape::Auto),
+        "outline" => Ok(Shape::Outline),
+        "field" => Ok(Shape::Field),
+        _ => Err("use auto, outline or field".into()),
+    }
 }
 
 /// Which glyphs; all that is given adds up.

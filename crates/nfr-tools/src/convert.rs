@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use serde::Serialize;
 
-use super::args::{SelectionArgs, all_cores, jobs, target};
+use super::args::{SelectionArgs, all_cores, jobs, shape, target};
 use super::failure::Failure;
 use super::files::{Output, read, same_file};
 use super::progress::{Reporter, Verbosity};
@@ -20,7 +20,7 @@ use nfr_convert::partial::Partial;
 use nfr_convert::ppem::PpemList;
 use nfr_convert::select::{glyph_count, glyph_names};
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Conversion, GlyphReport, Options, Quality, resume};
+use nfr_convert::{Conversion, GlyphReport, Options, Quality, Shape, resume};
 
 /// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
 /// programs
@@ -45,7 +45,13 @@ pub struct Args {
     /// What to hint for: smooth, mono or lcd
     #[arg(long, value_name = "TARGET", default_value_t, value_parser = target)]
     target: Target,
+    /// Where models have their shapes from: outline (the font's own), field (their own), or auto, which is outline unless the
+    /// outlines are dropped
+    #[arg(long, value_name = "SHAPE", default_value = "auto", value_parser = shape)]
+    shape: Shape,
     /// How much error is worth how many bytes: 0 for the smallest file, 100 for the least error
+    ///
+    /// With outlines, 100 is exact: every point is where the hints put it.
     #[arg(long, value_name = "0-100", default_value = "50", value_parser = quality)]
     quality: Quality,
     /// The seed of whatever is drawn at random; the same seed gives the same font
@@ -235,6 +241,7 @@ fn prepare(
         seed: args.seed,
         jobs: args.jobs,
         backend: args.backend,
+        shape: args.shape,
         drop_outlines: args.drop_outlines,
         ..Options::default().with_quality(args.quality)
     };

@@ -19,5 +19,5 @@ mod failure;
 mod files;
 mod progress;
 
-pub use args::{SelectionArgs, target};
+pub use args::{SelectionArgs, shape, target};
 pub use failure::{Failure, finish};

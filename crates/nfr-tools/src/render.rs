@@ -29,7 +29,7 @@ pub struct Args {
     #[arg(long, value_name = "SIZES", default_value = "8-64")]
     ppem: PpemList,
     /// Print one JSON object a line for each glyph and size: gid, ppem, left, top, width, height, advance,
-    /// and the coverage in base64
+    /// hinted_advance, and the coverage in base64
     #[arg(long)]
     json: bool,
     /// Draw a sheet: the text in a line for each size, or else the glyphs in order
@@ -50,6 +50,7 @@ struct RenderedGlyph {
     width: u32,
     height: u32,
     advance: f32,
+    hinted_advance: f32,
     pixels: String,
 }
 
@@ -82,6 +83,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn print_lines(args: &Args, font: &Font, source: &Neural, gids: &[u16]) -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
+    let mut rasterizer = nfr::Rasterizer::new(font);
     for &gid in gids {
         for &ppem in args.ppem.sizes() {
             let bitmap = source.at(ppem)?.bitmap(gid)?;
@@ -94,6 +96,7 @@ fn print_lines(args: &Args, font: &Font, source: &Neural, gids: &[u16]) -> Resul
                 width: place.width,
                 height: place.height,
                 advance: font.advance(gid.into(), ppem.into()),
+                hinted_advance: rasterizer.hinted_advance(gid.into(), ppem.into())?,
                 pixels: STANDARD.encode(&bitmap.pixels),
             };
             serde_json::to_writer(&mut out, &line).map_err(io::Error::from)?;

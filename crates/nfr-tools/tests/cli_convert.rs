@@ -19,7 +19,7 @@ const GIDS: [u64; 2] = [68, 74];
 const SIZES: std::ops::RangeInclusive<u64> = 10..=14;
 
 /// Few glyphs at few sizes, so that training takes seconds.
-const QUICK: [&str; 4] = ["--text", "ag", "--ppem", "10-14"];
+const QUICK: [&str; 6] = ["--text", "ag", "--ppem", "10-14", "--shape", "field"];
 /// For what needs any font that is converted.
 const QUICKEST: [&str; 4] = ["--text", "i", "--ppem", "12"];
 
@@ -75,7 +75,7 @@ fn render_prints_every_field_of_every_glyph_and_size() {
     for (line, (gid, ppem)) in out.lines().zip(cells) {
         let line = json(line);
         let fields: Vec<_> = line.as_object().unwrap().keys().map(String::as_str).collect();
-        assert_eq!(fields.len(), 8, "{fields:?}");
+        assert_eq!(fields.len(), 9, "{fields:?}");
         assert_eq!((line["gid"].as_u64(), line["ppem"].as_u64()), (Some(gid), Some(ppem)));
         let bitmap = decode(&font, gid as u32).unwrap().render(ppem as f32).unwrap();
         let place = bitmap.placement;
@@ -127,7 +127,7 @@ fn info_describes_the_font() {
     assert_eq!(info["outlines_match"], true);
     assert_eq!(info["file_bytes"], std::fs::metadata(&converted.font).unwrap().len());
     assert_eq!(number(&info["bytes_per_glyph"]), number(&info["table_bytes"]) / 2.0);
-    assert!(info["version"].as_str().unwrap().starts_with("1."));
+    assert!(info["version"].as_str().unwrap().starts_with("2."));
     let text = nfr(&["info", &converted.font]).succeeds().stdout;
     for part in ["smooth", "10-14 ppem", "2 of 2620 have models"] {
         assert!(text.contains(part), "{text}");
@@ -198,6 +198,28 @@ fn a_missed_threshold_exits_with_1_and_a_kept_one_with_0() {
 fn diff_refuses_a_font_that_is_not_the_original() {
     let serif = SANS.replace("Sans-", "Serif-");
     nfr(&["diff", &serif, &converted().font]).fails_with(&["not the same in the two fonts"]);
+}
+
+#[test]
+fn at_quality_100_the_font_draws_what_the_hints_draw() {
+    let directory = Directory::new();
+    let font = directory.name("exact.ttf");
+    for target in ["smooth", "mono"] {
+        let args = ["--text", "Ag%eé", "--quality", "100", "--target", target, SANS, &font];
+        nfr_convert(&args).succeeds();
+        nfr(&["diff", SANS, &font, "--fail-on", "mae>0 || exact<1"]).succeeds();
+    }
+}
+
+#[test]
+fn outlines_cannot_be_both_dropped_and_drawn() {
+    let directory = Directory::new();
+    let output = directory.name("out.ttf");
+    let args = [&QUICKEST[..], &["--shape", "outline", "--drop-outlines", SANS, &output]].concat();
+    nfr_convert(&args).fails_with(&["need them"]);
+    assert!(directory.files().is_empty());
+    let args = [&QUICKEST[..], &["--shape", "curve", SANS, &output]].concat();
+    nfr_convert(&args).rejects_usage(&["use auto, outline or field"]);
 }
 
 #[test]

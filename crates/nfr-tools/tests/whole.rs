@@ -17,7 +17,7 @@ use nfr_convert::compare::metrics::Sums;
 use nfr_convert::compare::picture::check_close;
 use nfr_convert::partial::Partial;
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Conversion, Options, convert, resume};
+use nfr_convert::{Conversion, Options, Shape, convert, resume};
 use read_fonts::types::GlyphId;
 use read_fonts::{FontRef, TableProvider};
 
@@ -28,7 +28,8 @@ use samples::{Silent, gid, gids};
 const ACCENTED: &str = "AEaeoucÁÀÂÄÅáàâäåéèêëóòôöúùûüç";
 
 fn options(data: &[u8], text: &str, steps: usize) -> Options {
-    let mut options = Options { gids: gids(data, text), ppem: 8..=40, ..Options::default() };
+    let mut options =
+        Options { gids: gids(data, text), ppem: 8..=40, shape: Shape::Field, ..Options::default() };
     options.schedule.steps = steps;
     options.refinement.rounds = 0;
     options

@@ -1,5 +1,6 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
+use zeno::{Command, Mask, Origin, PathBuilder};
 
 use super::*;
 
@@ -66,6 +67,20 @@ fn drawn_in_strips([width, height]: [usize; 2], polygons: &[Polygon], strip: usi
     pixels
 }
 
+/// The same bitmap, filled by zeno, whose y goes up.
+fn drawn_by_zeno([width, height]: [usize; 2], polygons: &[Polygon]) -> Vec<u8> {
+    let mut path: Vec<Command> = Vec::new();
+    let point = |(x, y): (&i32, &i32)| [*x, height as i32 * UNIT - y].map(|v| v as f32 / UNIT as f32);
+    for [x, y] in polygons {
+        let mut points = x.iter().zip(y).map(point);
+        path.move_to(points.next().unwrap_or_default());
+        points.for_each(|point| _ = path.line_to(point));
+        path.close();
+    }
+    let mut mask = Mask::new(path.as_slice());
+    mask.origin(Origin::BottomLeft).size(width as u32, height as u32).render().0
+}
+
 /// What of a polygon is on one side of an upright or level line.
 fn clipped(polygon: &[[f64; 2]], axis: usize, at: f64, above: bool) -> Vec<[f64; 2]> {
     let depth = |p: [f64; 2]| if above { p[axis] - at } else { at - p[axis] };
@@ -98,11 +113,26 @@ fn share([x, y]: &Polygon, column: usize, row: usize) -> f64 {
     cut.iter().zip(next).map(|(a, b)| a[1] * b[0] - a[0] * b[1]).sum::<f64>() * 0.5
 }
 
-/// How far (levels) a pixel may be from 255 times its share: half a level for rounding to whole ones, and for each
-/// side that passes through it up to a quarter, as its crossings of pixel borders are rounded to whole units: half of
-/// 1/512 pixel along a border is 1/1024 of a pixel's area.
+/// The longest side that `scene` makes, along x or y, in units.
+const LONGEST: f64 = 20.0 * UNIT as f64;
+
+/// How far (units) to the left or down a side may cross a border of pixels: less than one as it is rounded down, and for its
+/// reciprocal, which is at most 1 less than 2²⁴ / length, up to 2⁻²⁴ of a number of at most `UNIT` times the length.
+const CROSSING: f64 = crossing(LONGEST);
+
+const fn crossing(length: f64) -> f64 {
+    1.0 + length / 65536.0
+}
+
+/// How far (levels) a pixel may be from 256 times its share. The level is a whole number: one level less at most. A side
+/// whose two crossings are a unit too low covers a strip of the pixel too much or too little that is a unit wide: one level.
 fn allowed(sides: usize) -> f64 {
-    0.53 + 0.25 * sides as f64
+    1.0 + CROSSING * sides as f64
+}
+
+/// The level for an area: polygons may go around either way, and what they cover more than once is covered.
+fn exact_level(share: f64) -> f64 {
+    (share.abs() * 256.0).min(255.0)
 }
 
 /// Sides that pass through a pixel or touch it, as far as their boxes tell.
@@ -117,11 +147,17 @@ fn sides_at([x, y]: &Polygon, column: usize, row: usize) -> usize {
 
 #[test]
 fn a_square_is_drawn_where_it_is() {
-    let [x, y] = [[1, 1, 3, 3], [1, 3, 3, 1]].map(|at| at.map(|v| v * UNIT / 2 + UNIT).to_vec());
-    let pixels = drawn(&mut Area::default(), [4, 4], &[[x.clone(), y.clone()]]);
+    let [x, y] = [[1, 3, 3, 1], [1, 1, 3, 3]].map(|at| at.map(|v| v * UNIT / 2 + UNIT).to_vec());
+    let pixels = drawn(&mut Area::default(), [4, 4], &[[x, y]]);
     assert_eq!(pixels, [0, 0, 0, 0, 0, 64, 64, 0, 0, 64, 64, 0, 0, 0, 0, 0]);
-    let backwards = [x, y].map(|at| at.into_iter().rev().collect());
-    assert_eq!(drawn(&mut Area::default(), [4, 4], &[backwards]), [0; 16]);
+}
+
+#[test]
+fn a_polygon_that_goes_around_anticlockwise_is_filled_too() {
+    // A negative area becomes its complement: a whole number of levels is one less.
+    let [x, y] = [[1, 1, 3, 3], [1, 3, 3, 1]].map(|at| at.map(|v| v * UNIT / 2 + UNIT).to_vec());
+    let pixels = drawn(&mut Area::default(), [4, 4], &[[x, y]]);
+    assert_eq!(pixels, [0, 0, 0, 0, 0, 63, 63, 0, 0, 63, 63, 0, 0, 0, 0, 0]);
 }
 
 #[test]
@@ -129,7 +165,11 @@ fn the_whole_bitmap_is_filled_by_its_border() {
     for size in [[1, 1], [7, 2], [8, 3], [9, 1], [16, 5], [300, 40]] {
         let [right, bottom] = size.map(|pixels| pixels as i32 * UNIT);
         let border = [vec![0, 0, right, right], vec![0, bottom, bottom, 0]];
-        assert!(drawn(&mut Area::default(), size, &[border]).iter().all(|level| *level == 255), "{size:?}");
+        let backwards = border.clone().map(|at| at.into_iter().rev().collect());
+        for polygon in [border, backwards] {
+            let pixels = drawn(&mut Area::default(), size, &[polygon]);
+            assert!(pixels.iter().all(|level| *level == 255), "{size:?}");
+        }
     }
 }
 
@@ -138,10 +178,14 @@ fn a_large_triangle_has_half_the_ink_of_its_box() {
     let size = [2000, 1500];
     let [right, bottom] = size.map(|pixels| pixels as i32 * UNIT);
     let pixels = drawn(&mut Area::default(), size, &[[vec![0, 0, right], vec![0, bottom, bottom]]]);
-    let ink = pixels.iter().map(|pixel| f64::from(*pixel) / 255.0).sum::<f64>();
-    let half = (size[0] * size[1]) as f64 / 2.0;
-    // What the diagonal passes through, at half a level.
-    assert!((ink - half).abs() < 3500.0 * 0.5 / 255.0, "{ink} for {half}");
+    let ink = pixels.iter().map(|pixel| f64::from(*pixel)).sum::<f64>();
+    // The diagonal passes through so many pixels and halves them; as many of the others are inside as outside.
+    let passed = 2000 + 1500 - 500;
+    let inside = (size[0] * size[1] - passed) / 2;
+    let exact = inside as f64 * 255.0 + passed as f64 * 0.5 * 256.0;
+    // As `allowed`, for this length.
+    let each = 1.0 + crossing(right.into());
+    assert!((ink - exact).abs() < passed as f64 * each, "{ink} for {exact}");
 }
 
 #[test]
@@ -152,23 +196,37 @@ fn nothing_is_drawn_of_no_points_one_or_two() {
     }
 }
 
+/// Twice the area of a pixel.
+const FULL: i32 = 2 * UNIT * UNIT;
+
 /// What `block_coverage` does, for one pixel.
-fn coverage(sum: i32) -> u8 {
-    let share = (sum >> 5).clamp(0, FULL >> 5);
-    ((share - (share >> 8) + 32) >> 6) as u8
+fn coverage(area: i32) -> u8 {
+    let levels = i64::from(area) * 256;
+    let down = levels.div_euclid(FULL.into());
+    let level = if down < 0 { -1 - down } else { down };
+    level.min(255) as u8
 }
 
 #[test]
-fn coverage_is_the_nearest_to_the_exact_share() {
-    for sum in 0..=FULL {
-        let exact = f64::from(sum) / f64::from(FULL) * 255.0;
-        assert!((f64::from(coverage(sum)) - exact).abs() <= 0.53, "{sum}");
+fn coverage_is_the_share_rounded_down() {
+    for area in 0..=FULL {
+        let exact = f64::from(area) / f64::from(FULL) * 256.0;
+        assert_eq!(coverage(area), exact.floor().min(255.0) as u8, "{area}");
+        // Anticlockwise: a share of whole levels is one level less.
+        assert_eq!(coverage(-area), (exact.ceil() - 1.0).max(0.0) as u8, "{area}");
     }
-    assert_eq!([coverage(-1), coverage(i32::MIN), coverage(FULL + 1), coverage(i32::MAX)], [0, 0, 255, 255]);
+    let beyond = [FULL + 1, 2 * FULL, -FULL - 1, i32::MAX, i32::MIN];
+    assert_eq!(beyond.map(coverage), [255; 5]);
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1500) })]
+
+    #[test]
+    fn pixels_are_those_of_zeno((size, polygons) in scene(1..8)) {
+        let pixels = drawn(&mut Area::default(), size, &polygons);
+        prop_assert_eq!(pixels, drawn_by_zeno(size, &polygons));
+    }
 
     #[test]
     fn pixels_are_what_the_polygons_cover((size, polygons) in scene(3..8)) {
@@ -177,7 +235,7 @@ proptest! {
             let (column, row) = (k % size[0], k / size[0]);
             let share = polygons.iter().map(|p| share(p, column, row)).sum::<f64>();
             let sides = polygons.iter().map(|p| sides_at(p, column, row)).sum();
-            let exact = share.clamp(0.0, 1.0) * 255.0;
+            let exact = exact_level(share);
             prop_assert!(
                 (f64::from(*level) - exact).abs() <= allowed(sides),
                 "{level} for {exact} in column {column} of row {row}, {sides} sides"
@@ -186,11 +244,14 @@ proptest! {
     }
 
     #[test]
-    fn pixels_of_a_triangle_are_off_by_a_level_at_most((size, polygons) in scene(3..4)) {
+    fn pixels_of_a_triangle_are_off_by_three_levels_at_most((size, polygons) in scene(3..4)) {
         let pixels = drawn(&mut Area::default(), size, &polygons[..1]);
         for (k, level) in pixels.iter().enumerate() {
-            let exact = share(&polygons[0], k % size[0], k / size[0]).clamp(0.0, 1.0) * 255.0;
-            prop_assert!((f64::from(*level) - exact).abs() <= 1.0, "{level} for {exact} in pixel {k}");
+            let exact = exact_level(share(&polygons[0], k % size[0], k / size[0]));
+            // It passes each of a pixel's four borders twice at most, there and back. Both crossings are rounded in the same
+            // direction, so that one makes it larger and the other one smaller, each by half a level or little more.
+            let allowed = 1.0 + 4.0 * 0.5 * CROSSING;
+            prop_assert!((f64::from(*level) - exact).abs() <= allowed, "{level} for {exact} in pixel {k}");
         }
     }
 
@@ -242,15 +303,10 @@ proptest! {
         let mut pixels = vec![0; width];
         write_row(&mut blocks, &mut sums, &mut pixels);
         for (k, pixel) in pixels.iter().enumerate() {
-            let sum = above[k].wrapping_add(changes[k].0);
-            prop_assert_eq!(sums[k / LANES].to_array()[k % LANES], sum);
-            prop_assert_eq!(*pixel, coverage((sum << (SHIFT + 1)).wrapping_sub(changes[k].1)), "pixel {}", k);
+            let area = (above[k] << (SHIFT + 1)).wrapping_add(changes[k].1);
+            prop_assert_eq!(*pixel, coverage(area), "pixel {}", k);
+            prop_assert_eq!(sums[k / LANES].to_array()[k % LANES], above[k].wrapping_add(changes[k].0));
         }
-    }
-
-    #[test]
-    fn numbers_are_rounded_to_the_nearest_whole_one(v in -4_194_304.0f32..4_194_304.0) {
-        prop_assert_eq!(crate::number::round(v), v.round_ties_even() as i32);
     }
 }
 
@@ -260,8 +316,9 @@ fn the_specification_names_the_units() {
     for words in [
         format!("in units of 1/{UNIT} pixel"),
         format!("· strength · {UNIT}) + "),
-        format!("A pixel's sum is {}\ntimes the cover", 2 * UNIT),
-        format!("clamp(sum >> 5, 0, {})", FULL >> 5),
+        format!("is {} times the covers", 2 * UNIT),
+        format!("m = sum >> {LEVEL_BITS}"),
+        format!("⌊{RECIPROCAL} / "),
     ] {
         assert!(page.contains(&words), "spec/nfrt.md does not say {words:?}");
     }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::limits::Limits;
+use crate::model::contour::{Polygons, Tracer};
 use crate::model::grid::GridAxis;
 use crate::model::gridfit::{AxisWarp, FIELD_STEPS, Weights};
 use crate::model::sizes::Scale;

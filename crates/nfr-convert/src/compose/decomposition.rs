@@ -32,15 +32,17 @@ impl Decomposition {
         Self { modelled: gids.to_vec(), composed: Vec::new() }
     }
 
-    /// Finds the glyphs among `gids` that others compose, and the offsets of their parts at the teacher's `sizes`.
+    /// Finds the glyphs among `gids` that others compose, and the offsets of their parts at the teacher's `sizes`. With
+    /// `exact`, every hinted point of a part has to be that of the whole glyph.
     pub(crate) fn find(
         font: &FontRef<'_>,
         teacher: &Teacher,
         sizes: &[TeacherAt],
         scale: Scale,
         gids: &[u16],
+        exact: bool,
     ) -> Result<Self, Error> {
-        let mut matcher = PartMatcher::new(teacher, sizes, scale);
+        let mut matcher = PartMatcher::new(teacher, sizes, scale, exact);
         let mut duplicates = Duplicates::default();
         let mut matched: BTreeMap<u16, Vec<Part>> = BTreeMap::new();
         let mut composites = Vec::new();

@@ -10,10 +10,14 @@ use crate::teacher::{Outline, Teacher, TeacherAt};
 use nfr::Bitmap;
 use nfr::internals::model::compose::{Part, round_to_fraction, round_to_grid};
 use nfr::internals::model::gridfit::Scale;
+use nfr::internals::model::outline::scale_of;
+use nfr::internals::mul_fixed;
 use nfr::internals::table::MAX_GRID_OFFSET_BYTES;
 
 /// The largest distance of a hinted point from the moved part's (pixels): a quantisation step of models.
 const MAX_POINT_ERROR: f32 = 1.0 / 32.0;
+/// The same where parts have to be exact: less than the 1/64 pixel that hinted points are rounded to.
+const ROUNDING: f32 = 1.0 / 256.0;
 /// The largest error of the sum of the parts' exact bitmaps (mae over all sizes): a fraction of the models' own. Parts
 /// that overlap a lot have more.
 const MAX_SUM_ERROR: f64 = 0.0005;
@@ -34,6 +38,8 @@ pub(super) struct PartMatcher<'t> {
     ppem: Vec<usize>,
     /// The sizes that the table will have.
     scale: Scale,
+    /// The largest distance of a hinted point from the moved part's, in pixels.
+    tolerance: f32,
     /// The outlines of the glyphs that have been tried as parts.
     outlines: HashMap<u16, Rc<GlyphOutlines>>,
     /// The distinct lists of grid-fitted offsets of all matched parts.
@@ -41,9 +47,18 @@ pub(super) struct PartMatcher<'t> {
 }
 
 impl<'t> PartMatcher<'t> {
-    pub(super) fn new(teacher: &'t Teacher, sizes: &'t [TeacherAt], scale: Scale) -> Self {
+    pub(super) fn new(teacher: &'t Teacher, sizes: &'t [TeacherAt], scale: Scale, exact: bool) -> Self {
         let ppem = sizes.iter().map(|at| at.ppem().into()).collect();
-        Self { teacher, sizes, ppem, scale, outlines: HashMap::new(), grid_offsets: BTreeSet::new() }
+        let tolerance = if exact { ROUNDING } else { MAX_POINT_ERROR };
+        Self {
+            teacher,
+            sizes,
+            ppem,
+            scale,
+            tolerance,
+            outlines: HashMap::new(),
+            grid_offsets: BTreeSet::new(),
+        }
     }
 
     pub(super) fn units_per_em(&self) -> u16 {
@@ -78,7 +93,9 @@ impl<'t> PartMatcher<'t> {
         let mut parts = Vec::with_capacity(components.len());
         let mut at = 0;
         for (gid, part) in components.iter().zip(&outlines) {
-            let Some(part) = match_part(whole, at, *gid, part, &self.ppem, self.units_per_em()) else {
+            let Some(part) =
+                match_part(whole, at, *gid, part, &self.ppem, (self.units_per_em(), self.tolerance))
+            else {
                 return Ok(None);
             };
             at += outlines[parts.len()].unhinted.points.len();
@@ -138,7 +155,7 @@ fn match_part(
     gid: u16,
     part: &GlyphOutlines,
     ppem: &[usize],
-    units_per_em: u16,
+    (units_per_em, tolerance): (u16, f32),
 ) -> Option<Part> {
     let count = part.unhinted.points.len();
     let units = f32::from(units_per_em);
@@ -161,28 +178,34 @@ fn match_part(
         let mut offsets = Vec::with_capacity(part.hinted.len());
         for (whole, part) in whole.hinted.iter().zip(&part.hinted) {
             let (spread, offset) = difference(whole, part)?;
-            if spread > MAX_POINT_ERROR {
+            if spread > tolerance {
                 return None;
             }
             offsets.push(offset);
         }
-        matched.grid_offsets[axis] = grid_fitting(&offsets, matched.offset[axis], ppem, units_per_em)?;
+        matched.grid_offsets[axis] =
+            grid_fitting(&offsets, matched.offset[axis], ppem, (units_per_em, tolerance))?;
     }
     Some(matched)
 }
 
 /// The grid-fitting of a part's hinted `offsets` (pixels, at the sizes `ppem`): empty if they are the unhinted `offset`
 /// (font units), otherwise the whole pixels from the rounded one at each size.
-fn grid_fitting(offsets: &[f32], offset: i16, ppem: &[usize], units_per_em: u16) -> Option<Vec<i8>> {
-    let em = f32::from(offset) / f32::from(units_per_em);
+fn grid_fitting(
+    offsets: &[f32],
+    offset: i16,
+    ppem: &[usize],
+    (units_per_em, tolerance): (u16, f32),
+) -> Option<Vec<i8>> {
     let mut sizes = offsets.iter().zip(ppem);
-    if sizes.all(|(at, ppem)| (at - em * *ppem as f32).abs() <= MAX_POINT_ERROR) {
+    let unhinted = |ppem: usize| mul_fixed(offset.into(), scale_of(ppem as f32, units_per_em)) as f32 / 64.0;
+    if sizes.all(|(at, ppem)| (at - unhinted(*ppem)).abs() <= tolerance) {
         return Some(Vec::new());
     }
     let snap = |(at, ppem): (&f32, &usize)| {
         let pixel = at.round();
         let pixels = i8::try_from(pixel as i32 - round_to_grid(offset, *ppem, units_per_em)).ok()?;
-        ((at - pixel).abs() <= MAX_POINT_ERROR).then_some(pixels)
+        ((at - pixel).abs() <= tolerance).then_some(pixels)
     };
     offsets.iter().zip(ppem).map(snap).collect()
 }
@@ -194,7 +217,7 @@ mod tests {
     #[test]
     fn an_offset_that_is_neither_unhinted_nor_whole_pixels_does_not_match() {
         // Unhinted: 0.123 em.
-        let fit = |offsets: &[f32]| grid_fitting(offsets, 123, &[10, 11, 12], 1000);
+        let fit = |offsets: &[f32]| grid_fitting(offsets, 123, &[10, 11, 12], (1000, MAX_POINT_ERROR));
         assert_eq!(fit(&[1.23, 1.353, 1.476]), Some(vec![]));
         assert_eq!(fit(&[1.0, 2.0, 1.0]), Some(vec![0, 1, 0]));
         assert_eq!(fit(&[1.0, 1.5, 1.0]), None);

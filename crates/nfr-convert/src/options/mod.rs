@@ -1,6 +1,7 @@
 //! The options of a conversion and of its stages, which are checked before any work.
 
 mod capacity;
+mod fidelity;
 mod quality;
 mod refinement;
 mod schedule;
@@ -12,9 +13,22 @@ use nfr::Target;
 use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 
 pub use capacity::{CELL_UNITS_PER_EM, Capacity};
+pub use fidelity::Fidelity;
 pub use quality::Quality;
 pub use refinement::Refinement;
 pub use schedule::{Backend, Schedule};
+
+/// Where models have their shapes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shape {
+    /// The outlines of the font where it keeps them, else fields.
+    #[default]
+    Auto,
+    /// The outlines of the font.
+    Outline,
+    /// Fields of their own.
+    Field,
+}
 
 /// The options of a conversion.
 #[derive(Debug, Clone)]
@@ -35,7 +49,11 @@ pub struct Options {
     pub jobs: usize,
     /// burn's backend.
     pub backend: Backend,
-    /// Limits on a model's size.
+    /// Where models have their shapes from.
+    pub shape: Shape,
+    /// The balance of error and bytes of outline models.
+    pub fidelity: Fidelity,
+    /// Limits on a field's size.
     pub capacity: Capacity,
     /// The training's steps and learning rates.
     pub schedule: Schedule,
@@ -59,6 +77,8 @@ impl Default for Options {
             seed: 1,
             jobs: 1,
             backend: Backend::default(),
+            shape: Shape::default(),
+            fidelity: Fidelity::default(),
             capacity: Capacity::default(),
             schedule: Schedule::default(),
             refinement: Refinement::default(),
@@ -72,10 +92,20 @@ impl Options {
     /// The same options with another balance of error and bytes.
     pub fn with_quality(self, quality: Quality) -> Self {
         Self {
+            fidelity: Fidelity::new(quality),
             capacity: quality.capacity(),
             schedule: Schedule { smoothness: quality.smoothness(), ..self.schedule },
             refinement: quality.refinement(),
             ..self
+        }
+    }
+
+    /// Whether models move the font's own outlines.
+    pub fn uses_outlines(&self) -> bool {
+        match self.shape {
+            Shape::Auto => !self.drop_outlines,
+            Shape::Outline => true,
+            Shape::Field => false,
         }
     }
 
@@ -101,6 +131,9 @@ impl Options {
         }
         if self.jobs == 0 {
             return wrong("0 threads; use 1 or more".into());
+        }
+        if self.shape == Shape::Outline && self.drop_outlines {
+            return wrong("models of the font's outlines need them; do not drop them, or use fields".into());
         }
         self.capacity.check()?;
         self.schedule.check()?;

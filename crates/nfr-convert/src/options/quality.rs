@@ -45,6 +45,11 @@ impl Quality {
         low * (high / low).powf(at - below as f64)
     }
 
+    /// From 0 for the smallest files to 1 for the least error.
+    pub(super) fn share(self) -> f64 {
+        f64::from(self.0) / 100.0
+    }
+
     /// The limits on a model's size.
     pub fn capacity(self) -> Capacity {
         Capacity {

@@ -23,8 +23,9 @@ use nfr::internals::model::gridfit::{GridFit, Scale, Weights};
 /// Glyphs that are trained together. The number is fixed, because the last digits of the result depend on it.
 const CHUNK: usize = 2;
 
-/// Trains and measures the glyphs of one conversion.
-pub(super) struct GlyphTrainer<'c> {
+/// What the stages of one conversion share.
+#[derive(Clone, Copy)]
+pub(super) struct Stages<'c> {
     pub(super) teacher: &'c Teacher,
     /// The sizes that the teacher draws.
     pub(super) sizes: &'c [TeacherAt],
@@ -34,6 +35,33 @@ pub(super) struct GlyphTrainer<'c> {
     pub(super) predictor: &'c Predictor,
     pub(super) options: &'c Options,
     pub(super) progress: &'c dyn Progress,
+}
+
+impl Stages<'_> {
+    /// The samples of a glyph.
+    pub(super) fn samples(&self, gid: u16) -> Result<GlyphSamples, Error> {
+        let mut samples = GlyphSamples::draw(self.teacher, self.sizes, gid)?;
+        self.predictor.add_predicted_sizes(&mut samples)?;
+        if let Some(error) = &samples.hint_error {
+            self.progress.warn(error);
+        }
+        Ok(samples)
+    }
+
+    /// Draws the stored model and compares it with the teacher at the sizes that the teacher draws.
+    pub(super) fn measure(&self, samples: &GlyphSamples, glyph: &Glyph) -> Result<Sums, Error> {
+        let mut sums = Sums::default();
+        for sample in samples.sizes.iter().filter(|size| !size.predicted) {
+            sums.add(&sample.bitmap, &glyph.render(f32::from(sample.ppem))?);
+        }
+        self.progress.glyph_done(samples.gid, sums.figures().mae);
+        Ok(sums)
+    }
+}
+
+/// Trains and measures the fields of one conversion.
+pub(super) struct GlyphTrainer<'c> {
+    pub(super) stages: Stages<'c>,
     /// The work file, with the glyphs of an earlier conversion.
     pub(super) partial: Option<&'c Partial>,
 }
@@ -49,14 +77,14 @@ impl GlyphTrainer<'_> {
     /// Trains all chunks, on `options.jobs` threads.
     pub(super) fn train_all(&self, gids: &[u16]) -> Result<Vec<TrainedGlyph>, Error> {
         let chunks: Vec<&[u16]> = gids.chunks(CHUNK).collect();
-        let trained = parallel::map(&chunks, self.options.jobs, |gids| self.train_chunk(gids))?;
+        let trained = parallel::map(&chunks, self.stages.options.jobs, |gids| self.train_chunk(gids))?;
         Ok(trained.into_iter().flatten().collect())
     }
 
     fn train_chunk(&self, gids: &[u16]) -> Result<Vec<TrainedGlyph>, Error> {
-        let glyphs = gids.iter().map(|gid| self.samples(*gid)).collect::<Result<Vec<_>, _>>()?;
+        let glyphs = gids.iter().map(|gid| self.stages.samples(*gid)).collect::<Result<Vec<_>, _>>()?;
         let found = match self.partial {
-            Some(partial) => partial.weights(gids, self.scale)?,
+            Some(partial) => partial.weights(gids, self.stages.scale)?,
             None => None,
         };
         let weights = match found {
@@ -64,31 +92,22 @@ impl GlyphTrainer<'_> {
             None => {
                 let weights = self.weights(&glyphs)?;
                 if let Some(partial) = self.partial {
-                    partial.append(gids.iter().copied().zip(&weights), self.scale)?;
+                    partial.append(gids.iter().copied().zip(&weights), self.stages.scale)?;
                 }
                 weights
             }
         };
         let measured = glyphs.iter().zip(weights).map(|(samples, weights)| {
-            let model = Arc::new(GridFit::new(&weights, self.scale)?);
+            let model = Arc::new(GridFit::new(&weights, self.stages.scale)?);
             let glyph = Glyph::of_models(vec![(model, Origin::default())]);
-            Ok(TrainedGlyph { gid: samples.gid, weights, sums: self.measure(samples, &glyph)? })
+            Ok(TrainedGlyph { gid: samples.gid, weights, sums: self.stages.measure(samples, &glyph)? })
         });
         measured.collect()
     }
 
-    fn samples(&self, gid: u16) -> Result<GlyphSamples, Error> {
-        let mut samples = GlyphSamples::draw(self.teacher, self.sizes, gid)?;
-        self.predictor.add_predicted_sizes(&mut samples)?;
-        if let Some(error) = &samples.hint_error {
-            self.progress.warn(error);
-        }
-        Ok(samples)
-    }
-
     /// Trains the models of a chunk. A blank glyph needs no training.
     fn weights(&self, glyphs: &[GlyphSamples]) -> Result<Vec<Weights>, Error> {
-        let options = self.options;
+        let options = self.stages.options;
         let mut weights = vec![Weights::default(); glyphs.len()];
         let (inked, slots): (Vec<&GlyphSamples>, Vec<&mut Weights>) =
             glyphs.iter().zip(&mut weights).filter(|(samples, _)| !samples.outline.points.is_empty()).unzip();
@@ -96,25 +115,15 @@ impl GlyphTrainer<'_> {
             return Ok(weights);
         }
         let fit = |samples: &&GlyphSamples| {
-            initial_fit(samples, self.scale, options.target, options.capacity, options.seed)
+            initial_fit(samples, self.stages.scale, options.target, options.capacity, options.seed)
         };
         let mut parameters: Vec<Parameters> = inked.iter().map(fit).collect();
-        train(&inked, &mut parameters, self.scale, options.schedule, options.backend)?;
+        train(&inked, &mut parameters, self.stages.scale, options.schedule, options.backend)?;
         for ((slot, parameters), samples) in slots.into_iter().zip(&parameters).zip(inked) {
             *slot = parameters.quantise();
-            refine(slot, samples, self.scale, options.refinement)?;
+            refine(slot, samples, self.stages.scale, options.refinement)?;
         }
         Ok(weights)
-    }
-
-    /// Draws the stored model and compares it with the teacher at the sizes that the teacher draws.
-    fn measure(&self, samples: &GlyphSamples, glyph: &Glyph) -> Result<Sums, Error> {
-        let mut sums = Sums::default();
-        for sample in samples.sizes.iter().filter(|size| !size.predicted) {
-            sums.add(&sample.bitmap, &glyph.render(f32::from(sample.ppem))?);
-        }
-        self.progress.glyph_done(samples.gid, sums.figures().mae);
-        Ok(sums)
     }
 
     /// Compares composed glyphs with the teacher, on `options.jobs` threads.
@@ -127,15 +136,15 @@ impl GlyphTrainer<'_> {
         let parts = models
             .iter()
             .filter(|model| parts.contains(&model.gid))
-            .map(|model| Ok((model.gid, Arc::new(GridFit::new(&model.weights, self.scale)?))))
+            .map(|model| Ok((model.gid, Arc::new(GridFit::new(&model.weights, self.stages.scale)?))))
             .collect::<Result<BTreeMap<_, _>, Error>>()?;
-        parallel::map(composed, self.options.jobs, |glyph| {
+        parallel::map(composed, self.stages.options.jobs, |glyph| {
             let placed = glyph.parts.iter().map(|part| {
                 let model = parts.get(&part.gid).ok_or(Error::MissingGlyph(part.gid))?;
-                Ok((model.clone(), Origin::new(part, self.scale)?))
+                Ok((model.clone(), Origin::new(part, self.stages.scale)?))
             });
             let drawn = Glyph::of_models(placed.collect::<Result<_, Error>>()?);
-            Ok((glyph.gid, self.measure(&self.samples(glyph.gid)?, &drawn)?))
+            Ok((glyph.gid, self.stages.measure(&self.stages.samples(glyph.gid)?, &drawn)?))
         })
     }
 }

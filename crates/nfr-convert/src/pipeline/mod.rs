@@ -1,6 +1,8 @@
 //! The whole conversion: from a hinted font file to one with models.
 
+mod fields;
 mod glyphs;
+mod outlines;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,12 +18,11 @@ use crate::options::{CELL_UNITS_PER_EM, Options};
 use crate::partial::Partial;
 use crate::predict::Predictor;
 use crate::teacher::{Teacher, TeacherAt};
-use crate::writer::{self, GlyphModel};
-use glyphs::GlyphTrainer;
+use glyphs::Stages;
 use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
 
-/// Converts a font: trains a model for each glyph and writes a font that carries them instead of hints.
+/// Converts a font: finds or trains a model for each glyph and writes a font that carries them instead of hints.
 ///
 /// # Errors
 ///
@@ -64,28 +65,21 @@ pub fn resume(
     let sizes = known_ppem.map(|ppem| teacher.at(ppem)).collect::<Result<Vec<_>, _>>()?;
     warn_of_unhinted(&sizes, progress)?;
     let mut glyphs = if options.compose {
-        Decomposition::find(&font, &teacher, &sizes, scale, &options.gids)?
+        let exact = options.uses_outlines() && options.fidelity.is_exact();
+        Decomposition::find(&font, &teacher, &sizes, scale, &options.gids, exact)?
     } else {
         Decomposition::without_composition(&options.gids)
     };
     progress.planned(glyphs.modelled.len() + glyphs.composed.len());
     let predictor = Predictor::new(&teacher, &sizes, scale, &glyphs.modelled)?;
     glyphs.predict_part_offsets(&predictor, scale);
-    let trainer = GlyphTrainer {
-        teacher: &teacher,
-        sizes: &sizes,
-        scale,
-        predictor: &predictor,
-        options,
-        progress,
-        partial,
+    let conversion =
+        Stages { teacher: &teacher, sizes: &sizes, scale, predictor: &predictor, options, progress };
+    let (table, measured) = if options.uses_outlines() {
+        outlines::table(&conversion, &font, &header, &glyphs)?
+    } else {
+        fields::table(conversion, partial, &header, &glyphs)?
     };
-    let trained = trainer.train_all(&glyphs.modelled)?;
-    let mut measured: BTreeMap<u16, Sums> = trained.iter().map(|t| (t.gid, t.sums)).collect();
-    let models: Vec<GlyphModel> =
-        trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
-    measured.extend(trainer.measure_composed(&models, &glyphs.composed)?);
-    let (table, _) = writer::write(&header, &models, &glyphs.composed, &[], scale)?;
     let mut sums = Sums::default();
     for gid in &options.gids {
         sums.merge(measured.get(gid).ok_or(Error::MissingGlyph(*gid))?);

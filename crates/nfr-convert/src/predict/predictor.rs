@@ -67,7 +67,13 @@ impl Predictor {
             let [x, y] = [0, 1].map(|axis| axes[axis].predict(&wanted.sizes, &wanted.zones[axis]));
             let points: Vec<[f32; 2]> = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
             let bitmap = samples.outline.with_points(&points)?.rasterize()?;
-            samples.sizes.push(TrainingSample { ppem: wanted.ppem, points, bitmap, predicted: true });
+            samples.sizes.push(TrainingSample {
+                ppem: wanted.ppem,
+                points,
+                advance: None,
+                bitmap,
+                predicted: true,
+            });
         }
         samples.sizes.sort_by_key(|size| size.ppem);
         Ok(())

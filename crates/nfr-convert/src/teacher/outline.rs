@@ -21,6 +21,8 @@ pub struct Outline {
     /// All points of the outline's commands, in order. Hinting moves points and never reorders them, so that hinted and
     /// unhinted outlines correspond index by index.
     pub points: Vec<[f32; 2]>,
+    /// The advance width in the same unit, hinted if the points are.
+    pub advance: Option<f32>,
 }
 
 impl Outline {
@@ -60,7 +62,7 @@ impl Outline {
                 Command::Close => Command::Close,
             })
             .collect();
-        Ok(Self { commands, points: points.to_vec() })
+        Ok(Self { commands, points: points.to_vec(), advance: self.advance })
     }
 
     fn map(&mut self, to: impl Fn([f32; 2]) -> [f32; 2]) {

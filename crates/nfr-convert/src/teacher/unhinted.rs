@@ -62,7 +62,11 @@ pub(crate) fn draw(scaler: &ScalerFont, gid: u16) -> Result<Outline, ScaleError>
     let gid = GlyphId::from(gid);
     let mut outline = Outline::default();
     match scaler.outline(gid) {
-        Some(glyph) => glyph.draw(DrawMemory::Scratch, &mut outline).map(|_| outline),
+        Some(glyph) => {
+            let metrics = glyph.draw(DrawMemory::Scratch, &mut outline)?;
+            outline.advance = metrics.h_advance;
+            Ok(outline)
+        }
         // skrifa returns `None` for a damaged glyph, too.
         None if gid.to_u32() < scaler.font().num_glyphs() => {
             Err(ScaleError::Outline(skrifa::raw::model::Error::Malformed))

@@ -126,6 +126,7 @@ fn an_outline_without_height_is_trained_too() {
         let points = outline.points.iter().map(|p| p.map(|v| v * f32::from(ppem))).collect();
         let placement = Placement { left: 0, top: 3, width: 4, height: 1 };
         TrainingSample {
+            advance: None,
             ppem,
             points,
             bitmap: Bitmap { placement, pixels: vec![0, 0, 9, 0] },

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
 use nfr::Bitmap;
-use nfr_convert::{Conversion, Options, Progress, convert};
+use nfr_convert::{Conversion, Options, Progress, Shape, convert};
 use read_fonts::{FontRef, TableProvider};
 
 /// The fonts that most tests take: a sans, a serif, and one of another maker.
@@ -42,7 +42,7 @@ impl Progress for Silent {
 /// Converts the glyphs of a text with `steps` steps of training, for sizes 8–64. Without any step the models
 /// are the initial fits. Nothing is refined.
 pub(crate) fn converted(font: &[u8], text: &str, steps: usize) -> Conversion {
-    let mut options = Options { gids: gids(font, text), ..Options::default() };
+    let mut options = Options { gids: gids(font, text), shape: Shape::Field, ..Options::default() };
     options.schedule.steps = steps;
     options.refinement.rounds = 0;
     convert(font, &options, &Silent).unwrap()

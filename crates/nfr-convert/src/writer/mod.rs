@@ -1,5 +1,7 @@
 //! Writing the table.
 
+mod outlines;
+
 use std::collections::{HashMap, HashSet};
 
 use nfr::internals::model::compose::{Composed, Origin};
@@ -11,6 +13,8 @@ use nfr::internals::table::{
 };
 
 use crate::error::Error;
+
+pub(crate) use outlines::{OutlineTable, write_outlines};
 
 /// No packed model is longer than this: the table stores lengths in 16 bits.
 const MAX_MODEL_BYTES: usize = u16::MAX as usize;

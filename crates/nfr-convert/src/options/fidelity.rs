@@ -1,0 +1,48 @@
+//! How near outline models are to the hinted outlines.
+
+use super::quality::Quality;
+
+/// The balance of error and bytes of outline models.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fidelity {
+    error_per_bit: f64,
+}
+
+/// Below this price of a bit, moves that differ at all are different.
+const FINE: f64 = 0.01;
+/// The error that may be added to save one bit, in pixels of full coverage, at the qualities 0 and 100.
+const WORST: f64 = 0.04;
+const BEST: f64 = 0.002;
+
+impl Fidelity {
+    /// That of a quality. 100 is exact.
+    pub fn new(quality: Quality) -> Self {
+        let share = quality.share();
+        if share >= 1.0 {
+            return Self { error_per_bit: 0.0 };
+        }
+        Self { error_per_bit: WORST * (BEST / WORST).powf(share) }
+    }
+
+    /// Whether every point is where hinting puts it, at every size.
+    pub fn is_exact(self) -> bool {
+        self.error_per_bit == 0.0
+    }
+
+    /// The Lagrange multiplier of rate–distortion optimisation: the error, in pixels of full coverage, that may be added to save
+    /// one bit.
+    pub fn error_per_bit(self) -> f64 {
+        self.error_per_bit
+    }
+
+    /// Moves that differ by so much, in 1/64 pixel, count as the same while tracks are found.
+    pub fn tolerance(self) -> i32 {
+        if self.error_per_bit < FINE { 0 } else { 2 }
+    }
+}
+
+impl Default for Fidelity {
+    fn default() -> Self {
+        Self::new(Quality::default())
+    }
+}

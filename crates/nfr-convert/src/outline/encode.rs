@@ -1,0 +1,92 @@
+//! Encoding all outline models of a font.
+
+use nfr::internals::model::gridfit::Scale;
+use nfr::internals::table::BigEndian;
+use nfr::internals::table::outline::{self, Known, Question, Shared, Sources};
+
+use super::fit::{FittedOutline, add_corrections};
+use super::samples::OutlineSamples;
+use super::sharing::{SharedTracks, tracks};
+use crate::error::Error;
+use crate::options::Fidelity;
+use crate::parallel;
+
+/// Moves that are tried around the wanted one, in 1/64 pixel.
+const REACH: i32 = 8;
+
+/// The messages of the outline models of a font.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct EncodedOutlines {
+    /// One for each glyph, in their order.
+    pub(crate) glyphs: Vec<Vec<u8>>,
+    /// Along x and y: the level of each shared track, and its message.
+    pub(crate) shared: [Vec<(i16, Vec<u8>)>; 2],
+}
+
+/// Encodes outlines; their moves become those that are written.
+pub(crate) fn encode(
+    glyphs: &[(OutlineSamples, u16)],
+    outlines: &mut [FittedOutline],
+    scale: Scale,
+    fidelity: Fidelity,
+    jobs: usize,
+) -> Result<EncodedOutlines, Error> {
+    let shared = [0, 1].map(|axis| SharedTracks::find(outlines, axis, fidelity));
+    let levels = shared.each_ref().map(|tracks| {
+        tracks.0.iter().map(|track| BigEndian::from(track.level)).collect::<Vec<BigEndian<i16>>>()
+    });
+    let all: Vec<(&(OutlineSamples, u16), &FittedOutline)> = glyphs.iter().zip(&*outlines).collect();
+    let encoded = parallel::map(&all, jobs, |((samples, advance), outline)| {
+        let moves =
+            |axis: usize, number: usize, sizes: usize| Ok(shared[axis].0[number].moves[..sizes].to_vec());
+        let known = Known {
+            points: &samples.points,
+            advance: *advance,
+            scale,
+            shared: Shared { levels: [&levels[0], &levels[1]], moves: &moves },
+        };
+        let sources: Sources = [0, 1].map(|axis| {
+            let tracks = tracks(outline, axis);
+            tracks.map(|track| shared[axis].source(&track, scale.units_per_em(), fidelity)).collect()
+        });
+        let mut weights = outline.weights.clone();
+        let costs = &outline.costs;
+        let bytes = outline::encode(&known, &mut weights, &sources, &mut |question| {
+            choose(question, costs[question.axis][question.track][question.size], fidelity)
+        })?;
+        add_corrections(&mut weights, samples, scale.units_per_em(), fidelity);
+        if weights.axes.iter().all(|hints| hints.corrections.is_empty()) {
+            return Ok((bytes, weights));
+        }
+        let bytes = outline::encode(&known, &mut weights, &sources, &mut |question| question.wanted.into())?;
+        Ok((bytes, weights))
+    })?;
+    let mut messages = Vec::with_capacity(encoded.len());
+    for (outline, (bytes, weights)) in outlines.iter_mut().zip(encoded) {
+        outline.weights = weights;
+        messages.push(bytes);
+    }
+    let shared = shared.map(|tracks| {
+        let message =
+            |t: super::sharing::SharedTrack| (t.level, outline::encode_shared(t.level, &t.moves, scale));
+        tracks.0.into_iter().map(message).collect()
+    });
+    Ok(EncodedOutlines { glyphs: messages, shared })
+}
+
+/// The move with the least sum of error and bits: the wanted one, or a candidate near it. `cost` is the error, in pixels, of
+/// 1/64 pixel.
+fn choose(question: &Question<'_>, cost: f64, fidelity: Fidelity) -> i32 {
+    let wanted = i32::from(question.wanted);
+    if fidelity.is_exact() {
+        return wanted;
+    }
+    let total = |moved: i32| {
+        let mut bits = 0.0;
+        (question.price)(moved, &mut |probability| bits -= (f64::from(probability) / 4096.0).log2());
+        f64::from(moved.abs_diff(wanted)) * cost + fidelity.error_per_bit() * bits
+    };
+    let near = question.candidates.iter().copied().filter(|moved| (moved - wanted).abs() <= REACH);
+    let tried = near.chain([wanted]).map(|moved| (moved, total(moved)));
+    tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(wanted, |(moved, _)| moved)
+}

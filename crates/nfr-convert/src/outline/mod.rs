@@ -1,0 +1,13 @@
+//! Outline models: the tracks of each glyph, found in closed form; what glyphs share; and the messages of the table, whose moves
+//! are chosen by bits against the error of the pixels.
+
+mod correction;
+mod distortion;
+mod encode;
+mod fit;
+mod samples;
+mod sharing;
+
+pub(crate) use encode::{EncodedOutlines, encode};
+pub(crate) use fit::{FittedOutline, fit};
+pub(crate) use samples::OutlineSamples;

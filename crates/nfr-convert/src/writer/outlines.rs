@@ -1,0 +1,103 @@
+//! Writing outline models.
+
+use std::collections::{BTreeMap, HashMap};
+
+use nfr::internals::model::compose::{Composed, Part};
+use nfr::internals::table::outline::{
+    Advances, StoredGlyph, StoredPart, encode_list, encode_parts, pack, plain_parts,
+};
+use nfr::internals::table::{HEADER_LEN, Header, OUTLINE_MODELS};
+
+use super::{FLAGS_AT, put_header};
+use crate::error::Error;
+use crate::outline::EncodedOutlines;
+
+/// The outline models of a font.
+pub(crate) struct OutlineTable<'t> {
+    /// The glyphs that have hints, ascending.
+    pub(crate) gids: &'t [u16],
+    /// Their messages, and those of what they share.
+    pub(crate) encoded: &'t EncodedOutlines,
+    /// Composed glyphs, ascending, with their hinted advance widths.
+    pub(crate) composed: &'t [(Composed, Advances)],
+}
+
+/// Writes a table of outline models. `known` gives the parts of a composite glyph of `glyf`.
+pub(crate) fn write_outlines(
+    header: &Header,
+    table: &OutlineTable<'_>,
+    known: impl Fn(u16) -> Option<Vec<Part>>,
+) -> Result<Vec<u8>, Error> {
+    let lists = GridOffsetLists::of(table.composed);
+    let mut glyphs: BTreeMap<u16, Vec<u8>> =
+        table.gids.iter().copied().zip(table.encoded.glyphs.iter().cloned()).collect();
+    for (glyph, advances) in table.composed {
+        let parts = glyph.parts.iter().map(|part| lists.stored(part)).collect();
+        let stored = StoredGlyph { parts, advances: advances.clone() };
+        let known = known(glyph.gid).map(|parts| plain_parts(&parts));
+        glyphs.insert(glyph.gid, encode_parts(&stored, known.as_deref())?);
+    }
+    let shared = &table.encoded.shared;
+    let messages: Vec<&[u8]> = glyphs
+        .values()
+        .chain(shared.iter().flatten().map(|(_, message)| message))
+        .chain(&lists.messages)
+        .map(Vec::as_slice)
+        .collect();
+    let too_large =
+        || Error::LimitExceeded("outline models that are too large to store; convert fewer sizes".into());
+    let (blocks, payload) = pack(&messages).ok_or_else(too_large)?;
+    let mut out = Vec::with_capacity(HEADER_LEN + 6 + payload.len());
+    put_header(&mut out, header, 0, 0);
+    out.resize(HEADER_LEN, 0);
+    out[FLAGS_AT] |= OUTLINE_MODELS;
+    let ranges = ranges(glyphs.keys().copied());
+    for count in [ranges.len(), shared[0].len(), shared[1].len(), lists.messages.len()] {
+        out.extend(u16::try_from(count).map_err(|_| too_large())?.to_be_bytes());
+    }
+    out.extend((payload.len() as u32).to_be_bytes());
+    out.extend(ranges.into_iter().flatten().flat_map(u16::to_be_bytes));
+    out.extend(shared.iter().flatten().flat_map(|(level, _)| level.to_be_bytes()));
+    out.extend(blocks.into_iter().flat_map(u32::to_be_bytes));
+    out.extend(payload);
+    Ok(out)
+}
+
+/// Ranges of ascending glyphs: the first, the last, and how many are before it.
+fn ranges(gids: impl Iterator<Item = u16>) -> Vec<[u16; 3]> {
+    let mut ranges: Vec<[u16; 3]> = Vec::new();
+    for (index, gid) in gids.enumerate() {
+        match ranges.last_mut() {
+            Some([_, last, _]) if *last + 1 == gid => *last = gid,
+            _ => ranges.push([gid, gid, index as u16]),
+        }
+    }
+    ranges
+}
+
+/// The lists of grid offsets of all composed glyphs, the most used first.
+struct GridOffsetLists<'c> {
+    numbers: HashMap<&'c [i8], u16>,
+    messages: Vec<Vec<u8>>,
+}
+
+impl<'c> GridOffsetLists<'c> {
+    fn of(composed: &'c [(Composed, Advances)]) -> Self {
+        let mut uses: BTreeMap<&[i8], usize> = BTreeMap::new();
+        for list in composed.iter().flat_map(|(glyph, _)| &glyph.parts).flat_map(|part| &part.grid_offsets) {
+            if !list.is_empty() {
+                *uses.entry(list).or_default() += 1;
+            }
+        }
+        let mut lists: Vec<(&[i8], usize)> = uses.into_iter().collect();
+        lists.sort_by(|(a, n), (b, m)| m.cmp(n).then(a.cmp(b)));
+        let numbers = lists.iter().enumerate().map(|(number, (list, _))| (*list, number as u16)).collect();
+        Self { numbers, messages: lists.iter().map(|(list, _)| encode_list(list)).collect() }
+    }
+
+    fn stored(&self, part: &'c Part) -> StoredPart {
+        let lists =
+            part.grid_offsets.each_ref().map(|list| self.numbers.get(list.as_slice()).map_or(0, |n| n + 1));
+        StoredPart { gid: part.gid, offset: part.offset, lists }
+    }
+}

@@ -1,0 +1,185 @@
+//! Outline models of real fonts: how near they are, what they take, and what happens to outlines that were changed.
+
+#![allow(clippy::unwrap_used)]
+
+mod samples;
+
+use nfr::{Font, Rasterizer, Target};
+use nfr_convert::teacher::Teacher;
+use nfr_convert::{Conversion, Options, Quality, convert};
+use proptest::prelude::*;
+use read_fonts::types::Tag;
+use read_fonts::{FontRef, TableProvider};
+use samples::{Silent, font, gids};
+use write_fonts::FontBuilder;
+
+const FONTS: [&str; 3] = ["LiberationSans-Regular", "LiberationSerif-Regular", "DejaVuSans"];
+
+fn ascii() -> String {
+    (' '..='~').collect()
+}
+
+fn options(data: &[u8], text: &str, target: Target, quality: f32) -> Options {
+    let quality = Quality::new(quality).unwrap();
+    Options { gids: gids(data, text), target, jobs: 2, ..Options::default().with_quality(quality) }
+}
+
+fn converted(data: &[u8], text: &str, target: Target, quality: f32) -> Conversion {
+    convert(data, &options(data, text, target, quality), &Silent).unwrap()
+}
+
+#[test]
+fn at_quality_100_bitmaps_and_advances_are_those_of_the_hints() {
+    for name in FONTS {
+        let data = font(name);
+        for (target, most) in [(Target::Smooth, 140.0), (Target::Mono, 320.0)] {
+            let text = ascii() + "éÅ";
+            let conversion = converted(&data, &text, target, 100.0);
+            let figures = conversion.sums.figures();
+            assert_eq!((figures.mae, figures.exact), (0.0, 1.0), "{name} {target}");
+            let gids = gids(&data, &text);
+            let bytes = conversion.table_bytes as f64 / gids.len() as f64;
+            assert!(bytes <= most, "{name} {target}: {bytes} bytes a glyph");
+            let teacher = Teacher::new(&FontRef::new(&data).unwrap(), target).unwrap();
+            let font = Font::new(conversion.font).unwrap();
+            let mut rasterizer = Rasterizer::new(&font);
+            for ppem in [9, 16, 33, 64] {
+                let teacher = teacher.at(ppem).unwrap();
+                for &gid in &gids {
+                    let advance = rasterizer.hinted_advance(gid.into(), ppem.into()).unwrap();
+                    assert_eq!(
+                        Some(advance),
+                        teacher.hinted(gid).unwrap().advance,
+                        "{name} {target} {gid} {ppem}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn by_default_models_are_small_and_near() {
+    for name in FONTS {
+        let data = font(name);
+        for (target, most_bytes, most) in [(Target::Smooth, 110.0, 0.0002), (Target::Mono, 260.0, 0.0006)] {
+            let conversion = converted(&data, &ascii(), target, 50.0);
+            let figures = conversion.sums.figures();
+            assert!(figures.mae <= most && figures.bad16 <= 0.0003, "{name} {target}: {figures:?}");
+            let bytes = conversion.table_bytes as f64 / gids(&data, &ascii()).len() as f64;
+            assert!(bytes <= most_bytes, "{name} {target}: {bytes} bytes a glyph");
+        }
+    }
+}
+
+#[test]
+fn less_quality_takes_fewer_bytes() {
+    let data = font(FONTS[0]);
+    let of = |quality| {
+        let conversion = converted(&data, &ascii(), Target::Smooth, quality);
+        (conversion.table_bytes, conversion.sums.mae())
+    };
+    let all = [0.0, 25.0, 50.0, 75.0].map(of);
+    assert!(all.is_sorted_by(|a, b| a.0 < b.0 && a.1 > b.1), "{all:?}");
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let data = font(FONTS[1]);
+    let of = |jobs| {
+        let options = Options { jobs, ..options(&data, "RagÉ%", Target::Mono, 50.0) };
+        convert(&data, &options, &Silent).unwrap().font
+    };
+    assert!(of(1) == of(3));
+}
+
+#[test]
+fn odd_sizes_are_predicted_from_even_ones() {
+    let data = font(FONTS[0]);
+    let options = Options { ppem_step: 2, ..options(&data, &ascii(), Target::Smooth, 50.0) };
+    let conversion = convert(&data, &options, &Silent).unwrap();
+    let font = Font::new(conversion.font).unwrap();
+    let teacher = Teacher::new(&FontRef::new(&data).unwrap(), Target::Smooth).unwrap();
+    let (mut rasterizer, mut sums) = (Rasterizer::new(&font), nfr_convert::compare::metrics::Sums::default());
+    for ppem in (9..64).step_by(2) {
+        let at = teacher.at(ppem).unwrap();
+        for gid in gids(&data, &ascii()) {
+            let truth = at.hinted(gid).unwrap().rasterize().unwrap();
+            sums.add(&truth, &rasterizer.render(gid.into(), f32::from(ppem)).unwrap());
+        }
+    }
+    assert!(sums.mae() <= 0.0080, "{}", sums.mae());
+}
+
+#[test]
+fn a_size_is_drawn_alike_after_smaller_and_after_larger_ones() {
+    let data = font(FONTS[2]);
+    let font = Font::new(converted(&data, "gé", Target::Mono, 50.0).font).unwrap();
+    let sizes = [8.0, 12.4, 30.0, 64.0, 100.0, 9.0];
+    for gid in gids(&data, "gé") {
+        let mut rasterizer = Rasterizer::new(&font);
+        let warm = sizes.map(|ppem| rasterizer.render(gid.into(), ppem).unwrap());
+        let fresh = sizes.map(|ppem| Rasterizer::new(&font).render(gid.into(), ppem).unwrap());
+        assert!(warm == fresh);
+    }
+}
+
+/// The font with another byte in its table `glyf`.
+fn with_changed_outline(data: &[u8], gid: u16) -> Vec<u8> {
+    let original = FontRef::new(data).unwrap();
+    let mut glyf = original.table_data(Tag::new(b"glyf")).unwrap().as_bytes().to_vec();
+    let loca = original.loca(None).unwrap();
+    // The last byte of a simple glyph that is not padding: a coordinate.
+    let end = loca.get_raw(usize::from(gid) + 1).unwrap() as usize;
+    let at = (0..end).rev().find(|at| glyf[*at] != 0).unwrap();
+    glyf[at] ^= 1;
+    let mut builder = FontBuilder::new();
+    builder.add_raw(Tag::new(b"glyf"), glyf).copy_missing_tables(original);
+    builder.build()
+}
+
+#[test]
+fn a_model_knows_its_outline() {
+    let data = font(FONTS[0]);
+    let conversion = converted(&data, "ao", Target::Smooth, 50.0);
+    let [a, o] = gids(&data, "ao")[..] else { panic!("two glyphs") };
+    let font = Font::new(with_changed_outline(&conversion.font, a)).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
+    assert_eq!(rasterizer.render(a.into(), 16.0), Err(nfr::Error::StaleModel(a.into())));
+    assert!(rasterizer.render(o.into(), 16.0).is_ok());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn damaged_tables_are_errors_or_pictures(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        cut in prop::option::of(any::<prop::sample::Index>()),
+    ) {
+        use std::sync::OnceLock;
+        static FONT: OnceLock<Vec<u8>> = OnceLock::new();
+        let text = "ag%éÅi";
+        let data = FONT.get_or_init(|| converted(&font(FONTS[0]), text, Target::Mono, 100.0).font);
+        let file = FontRef::new(data).unwrap();
+        let mut table = file.table_data(Tag::new(b"Nfrt")).unwrap().as_bytes().to_vec();
+        for (at, byte) in changes {
+            let at = at.index(table.len());
+            table[at] = byte;
+        }
+        if let Some(cut) = cut {
+            table.truncate(cut.index(table.len()));
+        }
+        let mut builder = FontBuilder::new();
+        builder.add_raw(Tag::new(b"Nfrt"), table).copy_missing_tables(file);
+        if let Ok(font) = Font::new(builder.build()) {
+            let mut rasterizer = Rasterizer::new(&font);
+            for glyph in gids(data, text) {
+                for ppem in [9.0, 64.0] {
+                    let _ = rasterizer.render(glyph.into(), ppem);
+                    let _ = rasterizer.hinted_advance(glyph.into(), ppem);
+                }
+            }
+        }
+    }
+}

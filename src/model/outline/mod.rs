@@ -1,0 +1,11 @@
+//! The outline model: the font's own outline, grid-fitted as TrueType's programs do it. Some points, those of a *track*, are
+//! moved to hinted positions; the others are interpolated between them (TrueType's `IUP`), and a few are corrected one by
+//! one.
+
+mod hint;
+mod points;
+mod weights;
+
+pub use hint::{hint, interpolated, move_contour, scale_of};
+pub use points::OutlinePoints;
+pub use weights::{AxisHints, Correction, MAX_TRACKS, OutlineModel, OutlineWeights, UNTOUCHED};

@@ -1,0 +1,85 @@
+//! A glyph's outline as `glyf` has it: points in font units, components resolved.
+
+use alloc::vec::Vec;
+
+use read_fonts::model::glyph::outline::UnscaledOutlineSink;
+use read_fonts::tables::glyf::PointFlags;
+
+/// The points of an outline in font units, contour after contour.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct OutlinePoints {
+    /// Coordinates along x and y.
+    pub coordinates: [Vec<i16>; 2],
+    /// Whether each point is on the curve; the others are control points of quadratic curves.
+    pub on_curve: Vec<bool>,
+    /// Where each contour ends.
+    pub ends: Vec<u16>,
+    /// Whether something did not fit: a coordinate outside of 16 bits, more than 65535 points, or a cubic curve.
+    pub is_unfit: bool,
+}
+
+impl OutlinePoints {
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.on_curve.len()
+    }
+
+    /// Whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.on_curve.is_empty()
+    }
+
+    /// The points of each contour.
+    pub fn contours(&self) -> impl Iterator<Item = core::ops::Range<usize>> + '_ {
+        let starts = core::iter::once(0).chain(self.ends.iter().map(|end| usize::from(*end)));
+        starts.zip(&self.ends).map(|(start, end)| start..usize::from(*end))
+    }
+
+    /// A hash of all points, by which a model knows its outline: FNV-1a of 32 bits, folded to 16.
+    pub fn hash(&self) -> u16 {
+        let mut hash = 0x811C_9DC5u32;
+        let mut add = |value: u16| hash = (hash ^ u32::from(value)).wrapping_mul(0x0100_0193);
+        let [x, y] = &self.coordinates;
+        for ((x, y), on_curve) in x.iter().zip(y).zip(&self.on_curve) {
+            add(*x as u16);
+            add(*y as u16);
+            add(u16::from(*on_curve));
+        }
+        self.ends.iter().for_each(|end| add(*end));
+        (hash ^ hash >> 16) as u16
+    }
+
+    /// The memory that the points take, in bytes.
+    pub fn memory(&self) -> usize {
+        self.len() * (2 * size_of::<i16>() + size_of::<bool>()) + self.ends.len() * size_of::<u16>()
+    }
+
+    /// Gives memory back that is not used.
+    pub fn shrink(&mut self) {
+        self.coordinates.iter_mut().for_each(Vec::shrink_to_fit);
+        self.on_curve.shrink_to_fit();
+        self.ends.shrink_to_fit();
+    }
+}
+
+impl UnscaledOutlineSink for OutlinePoints {
+    fn start_contour(&mut self) {}
+
+    fn point(&mut self, x: i32, y: i32, flags: PointFlags) {
+        for (coordinates, v) in self.coordinates.iter_mut().zip([x, y]) {
+            self.is_unfit |= i16::try_from(v).is_err();
+            coordinates.push(v as i16);
+        }
+        self.is_unfit |= flags.is_off_curve_cubic();
+        self.on_curve.push(flags.is_on_curve());
+    }
+
+    fn end_contour(&mut self) {
+        let end = u16::try_from(self.len());
+        self.is_unfit |= end.is_err();
+        self.ends.push(end.unwrap_or(u16::MAX));
+    }
+}
+
+#[cfg(test)]
+mod tests;

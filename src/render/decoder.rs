@@ -1,0 +1,136 @@
+//! Decoding glyphs.
+
+use alloc::sync::Arc;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::font::Font;
+use super::glyph::{Drawn, Glyph, Outlines, SharedModel};
+use crate::error::Error;
+use crate::limits::Limits;
+use crate::model::compose::{Origin, Part};
+use crate::model::gridfit::GridFit;
+#[cfg(feature = "networks")]
+use crate::network::Network;
+use crate::table::outline::Advances;
+
+/// Decodes a font's glyphs, and keeps what composed glyphs share.
+#[derive(Debug)]
+pub struct Decoder {
+    font: Font,
+    limits: Limits,
+    /// The offsets that the parts of composed glyphs share; decoded with the first composed glyph.
+    offsets: Option<Vec<i8>>,
+}
+
+impl Decoder {
+    /// A decoder for a font's glyphs.
+    pub fn new(font: &Font, limits: Limits) -> Self {
+        Self { font: font.clone(), limits, offsets: None }
+    }
+
+    /// The font whose glyphs are decoded.
+    pub fn font(&self) -> &Font {
+        &self.font
+    }
+
+    pub(super) fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    pub(super) fn set_limits(&mut self, limits: Limits) {
+        self.limits = limits;
+    }
+
+    /// Decodes a glyph at all sizes.
+    ///
+    /// # Errors
+    ///
+    /// `NoSuchGlyph`, `MissingModel`; `MalformedModel` or `ModelTooLarge` if its bytes are damaged, `DecodedTooLarge`,
+    /// `StaleModel`, `NetworksNotBuilt`.
+    pub fn glyph(&mut self, glyph: u32) -> Result<Glyph, Error> {
+        self.glyph_with(glyph, self.font.scale().sizes(), |_| None)
+    }
+
+    /// Decodes a glyph, at the first so many sizes at least. `known` gives the models that are decoded already, for the parts
+    /// of composed glyphs.
+    pub(super) fn glyph_with(
+        &mut self,
+        glyph: u32,
+        sizes: usize,
+        known: impl Fn(u32) -> Option<SharedModel>,
+    ) -> Result<Glyph, Error> {
+        if glyph >= self.font.glyph_count() {
+            return Err(Error::NoSuchGlyph(glyph));
+        }
+        let (table, scale, limits) = (self.font.table()?, self.font.scale(), self.limits);
+        table.check_glyph(glyph)?;
+        let outline = |part: u32| match known(part) {
+            Some(SharedModel::Outline(model)) if model.sizes >= sizes && !table.is_composed(part) => {
+                Ok(model)
+            }
+            _ => self.font.outline_model(part, sizes, &limits).map(Arc::new),
+        };
+        let model = |part: u32| match known(part) {
+            Some(SharedModel::Field(model)) => Ok(model),
+            _ => {
+                let weights = table.weights(part, scale, limits.decoded_bytes)?;
+                GridFit::new(&weights, scale).map(Arc::new).map_err(|damage| damage.of(part))
+            }
+        };
+        let drawn = if table.is_network(glyph) {
+            self::network(&table, glyph, &limits)?
+        } else if table.outlines().find(glyph).is_some() {
+            let (parts, advances) = if table.is_composed(glyph) {
+                let (parts, advances) = self.font.outline_parts(glyph)?;
+                let placed = parts.into_iter().map(|part| Ok((outline(part.gid.into())?, part)));
+                (placed.collect::<Result<Vec<_>, Error>>()?, advances)
+            } else {
+                (vec![(outline(glyph)?, Part::default())], Advances::OfFirstPart)
+            };
+            let advances = match advances {
+                Advances::Rounded => Vec::new(),
+                Advances::OfFirstPart => {
+                    parts.first().map_or(Vec::new(), |(model, _)| model.weights.advances.clone())
+                }
+                Advances::Own(advances) => advances,
+            };
+            Drawn::Outlines(Outlines { parts, advances })
+        } else if table.is_composed(glyph) {
+            let offsets = match self.offsets.take() {
+                Some(offsets) => offsets,
+                None => table.part_offsets(glyph, scale, limits.decoded_bytes)?,
+            };
+            let parts = table.parts(glyph, scale, &offsets);
+            self.offsets = Some(offsets);
+            let placed = parts?.into_iter().map(|part| {
+                let origin = Origin::new(&part, scale).map_err(|damage| damage.of(glyph))?;
+                Ok((model(part.gid.into())?, origin))
+            });
+            Drawn::Fields(placed.collect::<Result<_, Error>>()?)
+        } else {
+            Drawn::Fields(vec![(model(glyph)?, Origin::default())])
+        };
+        let decoded = Glyph::new(glyph, limits, drawn);
+        limits.check_decoded(glyph, decoded.memory())?;
+        Ok(decoded)
+    }
+}
+
+#[cfg(feature = "networks")]
+fn network(table: &crate::table::Table<'_>, glyph: u32, limits: &Limits) -> Result<Drawn, Error> {
+    let weights = table.network(glyph, limits.decoded_bytes)?;
+    Network::new(weights).map(|network| Drawn::Network(Arc::new(network))).map_err(|damage| damage.of(glyph))
+}
+
+#[cfg(not(feature = "networks"))]
+fn network(_: &crate::table::Table<'_>, glyph: u32, _: &Limits) -> Result<Drawn, Error> {
+    Err(Error::NetworksNotBuilt(glyph))
+}
+
+impl Font {
+    /// Decodes a glyph, with the default limits.
+    pub(crate) fn decode(&self, glyph: u32) -> Result<Glyph, Error> {
+        Decoder::new(self, Limits::default()).glyph(glyph)
+    }
+}

@@ -1,0 +1,136 @@
+//! Contours as polygons: curves are split as in FreeType's `ftgrays.c` (`gray_render_conic`), so that the polygons are the
+//! same.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use crate::model::outline::OutlinePoints;
+use crate::number::{UNIT, UNIT_BITS};
+
+/// A curve is split until its second difference is at most this many units along both axes.
+const FLAT: i32 = UNIT / 4;
+/// The most vertices of a glyph.
+const MAX_VERTICES: usize = 1 << 18;
+/// Units in 1/64 pixel, as a shift.
+const FRACTION: i32 = UNIT_BITS - 6;
+
+/// Closed polygons, in units from the glyph's origin, y up.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Polygons {
+    /// The vertices' coordinates along x and y.
+    pub(super) vertices: [Vec<i32>; 2],
+    /// Where each polygon ends.
+    pub(super) ends: Vec<usize>,
+}
+
+type Point = [i32; 2];
+
+impl Polygons {
+    /// Removes all polygons.
+    pub(super) fn clear(&mut self) {
+        self.vertices.iter_mut().for_each(Vec::clear);
+        self.ends.clear();
+    }
+
+    /// Adds an outline whose points are at `places`, in 1/64 pixel, moved by `offset` in the same.
+    pub(super) fn add(&mut self, outline: &OutlinePoints, places: &[Vec<i32>; 2], offset: Point) {
+        for contour in outline.contours() {
+            self.add_contour(outline, places, contour, offset);
+        }
+    }
+
+    fn add_contour(
+        &mut self,
+        outline: &OutlinePoints,
+        places: &[Vec<i32>; 2],
+        contour: Range<usize>,
+        offset: Point,
+    ) {
+        let [Some(x), Some(y)] = places.each_ref().map(|places| places.get(contour.clone())) else { return };
+        let Some(on_curve) = outline.on_curve.get(contour) else { return };
+        let point = |k: usize| [x[k].wrapping_add(offset[0]), y[k].wrapping_add(offset[1])];
+        let Some(last) = on_curve.len().checked_sub(1) else { return };
+        // A contour begins at its first point on the curve, or else between its last and its first point.
+        let first = on_curve.iter().position(|on| *on);
+        let start = first.map_or_else(|| middle(point(last), point(0)), point);
+        let mut from = scaled(start);
+        let mut control: Option<Point> = None;
+        let begin = first.map_or(0, |first| first + 1);
+        for k in (begin..=last).chain(0..begin.saturating_sub(1)) {
+            let here = point(k);
+            let to = match (control, on_curve[k]) {
+                (None, false) => {
+                    control = Some(here);
+                    continue;
+                }
+                (Some(before), false) => middle(before, here),
+                (_, true) => here,
+            };
+            let to = scaled(to);
+            self.piece(from, control, to);
+            from = to;
+            control = (!on_curve[k]).then_some(here);
+        }
+        self.piece(from, control, scaled(start));
+        self.ends.push(self.vertices[0].len());
+    }
+
+    fn piece(&mut self, from: Point, control: Option<Point>, to: Point) {
+        match control {
+            None => self.push(to),
+            Some(control) => self.curve(from, scaled(control), to),
+        }
+    }
+
+    fn push(&mut self, point: Point) {
+        self.vertices[0].push(point[0]);
+        self.vertices[1].push(point[1]);
+    }
+
+    /// Whether there are more vertices than any glyph needs; further curves are not split then.
+    pub(super) fn are_too_many(&self) -> bool {
+        self.vertices[0].len() > MAX_VERTICES
+    }
+
+    /// A quadratic curve, without its first point.
+    fn curve(&mut self, from: Point, control: Point, to: Point) {
+        let bend = [0, 1]
+            .map(|k| from[k].wrapping_add(to[k]).wrapping_sub(control[k].wrapping_mul(2)).saturating_abs());
+        let mut bend = bend[0].max(bend[1]);
+        let mut depth = 0;
+        if self.are_too_many() {
+            bend = 0;
+        }
+        while bend > FLAT {
+            bend >>= 2;
+            depth += 1;
+        }
+        self.split(from, control, to, depth);
+    }
+
+    fn split(&mut self, from: Point, control: Point, to: Point, depth: u32) {
+        if depth == 0 {
+            self.push(to);
+            return;
+        }
+        let before = [0, 1].map(|k| from[k].wrapping_add(control[k]) >> 1);
+        let after = [0, 1].map(|k| control[k].wrapping_add(to[k]) >> 1);
+        let sum = |k: usize| from[k].wrapping_add(control[k]).wrapping_add(control[k].wrapping_add(to[k]));
+        let middle = [0, 1].map(|k| sum(k) >> 2);
+        self.split(from, before, middle, depth - 1);
+        self.split(middle, after, to, depth - 1);
+    }
+}
+
+/// The point that two control points imply between them, rounded towards 0 as FreeType does.
+fn middle(a: Point, b: Point) -> Point {
+    [0, 1].map(|k| a[k].wrapping_add(b[k]) / 2)
+}
+
+/// In units.
+fn scaled(point: Point) -> Point {
+    point.map(|v| v.wrapping_shl(FRACTION as u32))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,23 @@
+//! Working memory.
+
+use alloc::vec::Vec;
+
+use super::area::Area;
+use super::flatten;
+use crate::model::contour::{Polygons, Tracer};
+use crate::model::hinting::Hinting;
+
+/// Working memory that drawing reuses.
+#[derive(Debug, Clone, Default)]
+pub struct Scratch {
+    pub(super) area: Area,
+    /// Of fields: what moves their vertices.
+    pub(super) hinting: Hinting,
+    /// Vertices in units from the bitmap's upper left corner, y down: coordinates along x and y.
+    pub(super) points: [Vec<i32>; 2],
+    pub(super) tracer: Tracer,
+    pub(super) fresh: Polygons,
+    /// Of outlines: hinted points in 1/64 pixel.
+    pub(super) outline: [Vec<i32>; 2],
+    pub(super) polygons: flatten::Polygons,
+}

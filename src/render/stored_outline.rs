@@ -1,0 +1,196 @@
+//! The outline models of a font: messages of the table, and outlines of `glyf`.
+
+use alloc::vec::Vec;
+
+use read_fonts::TableProvider;
+use read_fonts::tables::glyf::Glyf;
+use read_fonts::tables::glyf::{Anchor, CompositeGlyphFlags, Glyph};
+use read_fonts::tables::loca::Loca;
+
+use super::font::Font;
+use super::outline::outline_points;
+use crate::error::{Damage, Error};
+use crate::limits::Limits;
+use crate::model::compose::Part;
+use crate::model::outline::OutlineModel;
+use crate::table::MAX_PARTS;
+use crate::table::context_model::ContextModel;
+use crate::table::outline::{
+    Advances, Known, OutlineIndex, Shared, code, code_advances, code_list, code_parts, code_shared, decode,
+    decode_list, decode_parts, decode_shared, plain_parts,
+};
+use crate::table::range::Coder;
+
+/// The deepest nesting of components. `maxp` allows 16; fonts have two or three.
+const MAX_DEPTH: usize = 16;
+
+impl Font {
+    /// Decodes the outline model of a glyph, at the first so many sizes.
+    pub(super) fn outline_model(
+        &self,
+        glyph: u32,
+        sizes: usize,
+        limits: &Limits,
+    ) -> Result<OutlineModel, Error> {
+        let table = self.table()?;
+        let (outlines, scale) = (*table.outlines(), self.scale());
+        let message = outlines.glyph(glyph)?;
+        let mut points = outline_points(self, glyph)?;
+        points.shrink();
+        let moves =
+            |axis: usize, number: usize, sizes: usize| self.shared_moves(&outlines, axis, number, sizes);
+        let shared = Shared { levels: outlines.levels(), moves: &moves };
+        let known = Known { points: &points, advance: self.advance_units(glyph), scale, shared };
+        let (weights, _) = decode(message, &known, sizes).map_err(|damage| damage.of(glyph))?;
+        let model = OutlineModel::new(points, weights, scale, sizes).map_err(|damage| damage.of(glyph))?;
+        limits.check_decoded(glyph, model.memory())?;
+        Ok(model)
+    }
+
+    /// The parts of a composed glyph, and its hinted advance widths.
+    pub(super) fn outline_parts(&self, glyph: u32) -> Result<(Vec<Part>, Advances), Error> {
+        let table = self.table()?;
+        let outlines = table.outlines();
+        let known = self.components(glyph).map(|parts| plain_parts(&parts));
+        let sizes = self.scale().sizes();
+        let stored = decode_parts(outlines.glyph(glyph)?, known.as_deref(), sizes)
+            .map_err(|damage| damage.of(glyph))?;
+        let list = |number: u16| {
+            let Some(number) = usize::from(number).checked_sub(1) else { return Ok(Vec::new()) };
+            let bytes = outlines.list(number).ok_or(Damage::Malformed("has a part without offsets"))?;
+            decode_list(bytes, sizes)
+        };
+        let part = |[x, y]: [u16; 2]| Ok::<_, Damage>([list(x)?, list(y)?]);
+        let parts = stored.parts.iter().map(|stored| {
+            let grid_offsets = part(stored.lists).map_err(|damage| damage.of(glyph))?;
+            Ok(Part { gid: stored.gid, offset: stored.offset, grid_offsets })
+        });
+        Ok((parts.collect::<Result<_, Error>>()?, stored.advances))
+    }
+
+    /// The moves of a shared track at the first so many sizes.
+    fn shared_moves(
+        &self,
+        outlines: &OutlineIndex<'_>,
+        axis: usize,
+        number: usize,
+        sizes: usize,
+    ) -> Result<Vec<i16>, Damage> {
+        let level = outlines.levels()[axis].get(number).map(|level| level.get());
+        let message = level.zip(outlines.shared(axis, number));
+        let (level, bytes) = message.ok_or(Damage::Malformed("has a track outside the table"))?;
+        decode_shared(bytes, level, self.scale(), sizes)
+    }
+
+    /// What a composite glyph of `glyf` consists of.
+    fn components(&self, glyph: u32) -> Option<Vec<Part>> {
+        let tables = self.model().tables();
+        components(&tables.loca(None).ok()?, &tables.glyf().ok()?, glyph)
+    }
+
+    /// A glyph's advance width in font units.
+    pub(super) fn advance_units(&self, glyph: u32) -> u16 {
+        self.model().glyph_metrics().h_advance(glyph.into()).clamp(0.0, f32::from(u16::MAX)) as u16
+    }
+}
+
+/// Codes all messages of a font's outline models again, for whoever counts what they consist of. Before each of them `model`
+/// forgets what it has adapted to.
+///
+/// # Errors
+///
+/// Those of damaged models.
+pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -> Result<(), Error> {
+    let table = font.table()?;
+    let (outlines, scale) = (*table.outlines(), font.scale());
+    let sizes = scale.sizes();
+    let shared_moves =
+        |axis: usize, number: usize, sizes: usize| font.shared_moves(&outlines, axis, number, sizes);
+    let shared = Shared { levels: outlines.levels(), moves: &shared_moves };
+    for glyph in table.gids().map(u32::from).filter(|glyph| outlines.find(*glyph).is_some()) {
+        model.forget();
+        let message = outlines.glyph(glyph)?;
+        let recoded = if table.is_composed(glyph) {
+            let known = font.components(glyph).map(|parts| plain_parts(&parts));
+            decode_parts(message, known.as_deref(), sizes).and_then(|mut stored| {
+                code_parts(model, &mut stored.parts, known.as_deref())?;
+                code_advances(model, &mut stored.advances, sizes);
+                Ok(())
+            })
+        } else {
+            let points = outline_points(font, glyph)?;
+            let known = Known { points: &points, advance: font.advance_units(glyph), scale, shared };
+            decode(message, &known, sizes).and_then(|(mut weights, mut sources)| {
+                code(model, &known, &mut weights, &mut sources, sizes, &mut |question| question.wanted.into())
+            })
+        };
+        recoded.map_err(|damage| damage.of(glyph))?;
+    }
+    for (axis, levels) in outlines.levels().into_iter().enumerate() {
+        for (number, level) in levels.iter().enumerate() {
+            model.forget();
+            let mut moves = shared_moves(axis, number, sizes).map_err(|damage| damage.of(0))?;
+            code_shared(model, level.get(), &mut moves, scale, sizes);
+        }
+    }
+    for list in (0..outlines.lists()).filter_map(|number| outlines.list(number)) {
+        model.forget();
+        code_list(model, &mut decode_list(list, sizes).map_err(|damage| damage.of(0))?);
+    }
+    Ok(())
+}
+
+/// The simple glyphs that a composite glyph of `glyf` consists of, with their offsets in font units. None for a simple glyph, for
+/// one whose components are scaled or attached to points, and for one that has too many or cannot be read.
+pub fn components(loca: &Loca<'_>, glyf: &Glyf<'_>, glyph: u32) -> Option<Vec<Part>> {
+    if let Some(Glyph::Simple(_)) | None = loca.get_glyf(glyph.into(), glyf).ok()? {
+        return None;
+    }
+    let mut found = Found { parts: Vec::new(), steps: 0 };
+    collect((loca, glyf), glyph, [0; 2], MAX_DEPTH, &mut found)?;
+    Some(found.parts)
+}
+
+/// The parts that are found so far.
+struct Found {
+    parts: Vec<Part>,
+    /// The glyphs that were looked at.
+    steps: usize,
+}
+
+/// The most glyphs that are looked at: empty ones are no parts.
+const MAX_STEPS: usize = 256;
+
+fn collect(
+    tables: (&Loca<'_>, &Glyf<'_>),
+    glyph: u32,
+    offset: [i16; 2],
+    depth: usize,
+    found: &mut Found,
+) -> Option<()> {
+    found.steps += 1;
+    if found.steps > MAX_STEPS {
+        return None;
+    }
+    let scaled = CompositeGlyphFlags::WE_HAVE_A_SCALE
+        | CompositeGlyphFlags::WE_HAVE_AN_X_AND_Y_SCALE
+        | CompositeGlyphFlags::WE_HAVE_A_TWO_BY_TWO;
+    match tables.0.get_glyf(glyph.into(), tables.1).ok()? {
+        Some(Glyph::Simple(_)) if found.parts.len() < MAX_PARTS => {
+            found.parts.push(Part { gid: glyph.try_into().ok()?, offset, ..Part::default() });
+        }
+        Some(Glyph::Simple(_)) => return None,
+        Some(Glyph::Composite(composite)) => {
+            for component in composite.components() {
+                let Anchor::Offset { x, y } = component.anchor else { return None };
+                if component.flags.intersects(scaled) {
+                    return None;
+                }
+                let offset = [offset[0].checked_add(x)?, offset[1].checked_add(y)?];
+                collect(tables, component.glyph.to_u32(), offset, depth.checked_sub(1)?, found)?;
+            }
+        }
+        None => {}
+    }
+    Some(())
+}

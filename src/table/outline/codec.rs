@@ -1,0 +1,335 @@
+//! The messages of the outline models: the hints of a glyph, the parts of a composed one, a shared track, and a list of grid
+//! offsets. Writing and reading are the same functions. `spec/nfrt.md` describes the order.
+
+use alloc::vec::Vec;
+
+use super::positions::{self, Axis, Choose, Referred};
+use super::shared::{Shared, Source};
+use super::structure;
+use crate::error::Damage;
+use crate::model::outline::{AxisHints, Correction, OutlinePoints, OutlineWeights, UNTOUCHED, scale_of};
+use crate::model::sizes::Scale;
+use crate::number::mul_fixed;
+use crate::table::context_model::{ContextModel, class};
+use crate::table::damage::{malformed, malformed_end, too_large};
+use crate::table::elements::{
+    ADVANCE, CORRECTED, CORRECTED_SIZE, CORRECTION, MESSAGE, OUTLINE_GRID_OFFSET, UNUSUAL,
+};
+use crate::table::priors::OUTLINE_PRIOR;
+use crate::table::range::{Coder, Decoder, Encoder};
+
+/// The most moves of an axis: tracks times sizes.
+const MAX_MOVES: usize = 1 << 17;
+/// The most points times sizes of a glyph with corrections.
+pub const MAX_CORRECTED: usize = 1 << 16;
+
+/// What is known of a glyph before its message is read.
+#[derive(Clone, Copy)]
+pub struct Known<'a> {
+    /// The outline.
+    pub points: &'a OutlinePoints,
+    /// The advance width in font units.
+    pub advance: u16,
+    /// Units and sizes.
+    pub scale: Scale,
+    /// The font's shared tracks.
+    pub shared: Shared<'a>,
+}
+
+/// The sources of the tracks of both axes.
+pub type Sources = [Vec<Source>; 2];
+
+/// Encodes the hints of a glyph. `choose` may change moves.
+///
+/// # Errors
+///
+/// As [`decode`], for hints that it would refuse.
+pub fn encode(
+    known: &Known<'_>,
+    weights: &mut OutlineWeights,
+    sources: &Sources,
+    choose: Choose<'_>,
+) -> Result<Vec<u8>, Damage> {
+    let mut model = ContextModel::new(Encoder::new(), &OUTLINE_PRIOR);
+    code(&mut model, known, weights, &mut sources.clone(), known.scale.sizes(), choose)?;
+    Ok(model.coder.finish())
+}
+
+/// Decodes the hints of a glyph at the first so many sizes, and where its tracks come from.
+///
+/// # Errors
+///
+/// `Stale` if they are not those of this outline; `Malformed` for bytes that end early or contradict themselves, `TooLarge` for
+/// more than the format allows.
+pub fn decode(bytes: &[u8], known: &Known<'_>, sizes: usize) -> Result<(OutlineWeights, Sources), Damage> {
+    let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
+    let (mut weights, mut sources) = (OutlineWeights::default(), Sources::default());
+    code(&mut model, known, &mut weights, &mut sources, sizes, &mut |_| 0)?;
+    if sizes == known.scale.sizes() {
+        model.coder.finish().map_err(malformed_end)?;
+    }
+    Ok((weights, sources))
+}
+
+/// Whether a message is that of a composed glyph.
+pub fn is_composed(bytes: &[u8]) -> bool {
+    let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
+    model.bits(MESSAGE, 0, 2, 0) == COMPOSED
+}
+
+/// The kinds of messages.
+const HINTS: usize = 0;
+pub(super) const COMPOSED: usize = 1;
+
+/// Codes 16 bits that nothing predicts.
+pub(super) fn raw<C: Coder>(model: &mut ContextModel<'_, C>, value: u16) -> u16 {
+    (0..16).rev().fold(0, |known, bit| {
+        let bit = model.coder.bit(crate::table::range::ONE / 2, value >> bit & 1 == 1);
+        known << 1 | u16::from(bit)
+    })
+}
+
+/// Codes a glyph's hints at the first so many sizes. A reader's `weights` and `sources` are empty.
+///
+/// # Errors
+///
+/// As [`decode`].
+pub fn code<C: Coder>(
+    model: &mut ContextModel<'_, C>,
+    known: &Known<'_>,
+    weights: &mut OutlineWeights,
+    sources: &mut Sources,
+    sizes: usize,
+    choose: Choose<'_>,
+) -> Result<(), Damage> {
+    let Known { points, scale, .. } = *known;
+    if model.bits(MESSAGE, 0, 2, HINTS) != HINTS {
+        return Err(malformed("is not that of an outline"));
+    }
+    if raw(model, points.hash()) != points.hash() {
+        return Err(Damage::Stale);
+    }
+    let OutlineWeights { axes, advances } = weights;
+    for axis in [1, 0] {
+        let (hints, sources) = (&mut axes[axis], &mut sources[axis]);
+        if model.flag(UNUSUAL, [axis, 0, 0], !hints.levels.is_empty()) {
+            structure::code(model, points, scale.units_per_em(), axis, hints, sources, &known.shared)?;
+            check_moves(hints.levels.len(), scale)?;
+            hints.moves.resize(hints.levels.len() * sizes, 0);
+        }
+    }
+    let has_advances = model.flag(UNUSUAL, [2, 0, 0], advances.iter().any(|advance| *advance != 0));
+    advances.resize(if has_advances { sizes } else { 0 }, 0);
+    let mut corrected = [0, 1].map(|axis| Corrections::new(axis, &axes[axis], points.len(), C::WRITES));
+    for axis in &mut corrected {
+        axis.is_used = model.flag(UNUSUAL, [3 + axis.axis, 0, 0], axis.is_used);
+        if axis.is_used && points.len() * scale.sizes() > MAX_CORRECTED {
+            return Err(too_large(
+                "corrected points",
+                points.len() as i32,
+                (MAX_CORRECTED / scale.sizes()) as i32,
+            ));
+        }
+    }
+    for (hints, corrected) in axes.iter_mut().zip(&corrected) {
+        hints.is_hinted = !hints.levels.is_empty() || corrected.is_used;
+    }
+    let levels = axes.each_ref().map(|hints| hints.levels.clone());
+    let mut tracks = Vec::with_capacity(2);
+    for axis in [0, 1] {
+        tracks.push(Axis::new(axis, &levels[axis], shared_moves(known, axis, &sources[axis], sizes)?));
+    }
+    let mut before = [0; 2];
+    for (size, scale) in positions::scales(scale).take(sizes).enumerate() {
+        model.check()?;
+        for axis in [1, 0] {
+            let moves = size * levels[axis].len()..(size + 1) * levels[axis].len();
+            let Some(moves) = axes[axis].moves.get_mut(moves) else { continue };
+            tracks[axis].code(model, size, scale, moves, choose);
+        }
+        if let Some(advance) = advances.get_mut(size) {
+            let context = advance_context(known.advance, scale, &axes[0], size, before);
+            let step = model.signed(ADVANCE, [context, 0, 0], i32::from(*advance) - before[0]);
+            *advance = before[0].wrapping_add(step) as i8;
+            before = [(*advance).into(), before[0]];
+        }
+        for corrected in &mut corrected {
+            corrected.code(model, size, &mut axes[corrected.axis])?;
+        }
+    }
+    for (axis, corrected) in axes.iter_mut().zip(corrected) {
+        if !C::WRITES {
+            axis.corrections = corrected.list;
+        }
+    }
+    Ok(())
+}
+
+fn check_moves(tracks: usize, scale: Scale) -> Result<(), Damage> {
+    if tracks * scale.sizes() <= MAX_MOVES {
+        return Ok(());
+    }
+    Err(too_large("moves of tracks", (tracks * scale.sizes()) as i32, MAX_MOVES as i32))
+}
+
+/// For each track, the shared one that it refers to.
+fn shared_moves(
+    known: &Known<'_>,
+    axis: usize,
+    sources: &[Source],
+    sizes: usize,
+) -> Result<Vec<Referred>, Damage> {
+    let referred = |number: usize, is_same: bool| {
+        Ok(Referred { moves: Some((known.shared.moves)(axis, number, sizes)?), is_same })
+    };
+    let moves = |source: &Source| match *source {
+        Source::Own => Ok(Referred::default()),
+        Source::Same(number) => referred(number.into(), true),
+        Source::Near(number) => referred(number.into(), false),
+    };
+    sources.iter().map(moves).collect()
+}
+
+/// The context of a hinted advance width: the direction that the rightmost track's move takes the rounded width to, and the two
+/// widths before.
+fn advance_context(advance: u16, scale: i32, x: &AxisHints, size: usize, before: [i32; 2]) -> usize {
+    let plain = mul_fixed(advance.into(), scale);
+    let moved = x.moves_at(size).last().map_or(0, |moved| i32::from(*moved));
+    let rounded = |position: i32| position.wrapping_add(32) >> 6;
+    let edge = rounded(plain.wrapping_add(moved)).wrapping_sub(rounded(plain));
+    class(edge, [0, 1]) * 9 + class(before[0], [0, 1]) * 3 + class(before[1], [0, 1])
+}
+
+/// The corrections of an axis while they are coded.
+struct Corrections {
+    axis: usize,
+    is_used: bool,
+    /// How far each point is corrected at the size before.
+    before: Vec<i16>,
+    /// Whether any was.
+    any_before: bool,
+    /// Those that were read.
+    list: Vec<Correction>,
+    points: usize,
+}
+
+impl Corrections {
+    fn new(axis: usize, hints: &AxisHints, points: usize, writes: bool) -> Self {
+        let is_used = writes && !hints.corrections.is_empty();
+        Self { axis, is_used, before: Vec::new(), any_before: false, list: Vec::new(), points }
+    }
+
+    fn code<C: Coder>(
+        &mut self,
+        model: &mut ContextModel<'_, C>,
+        size: usize,
+        hints: &mut AxisHints,
+    ) -> Result<(), Damage> {
+        if !self.is_used {
+            return Ok(());
+        }
+        self.before.resize(self.points, 0);
+        let wanted = if C::WRITES { hints.corrections_at(size) } else { &[] };
+        let any = model.flag(
+            CORRECTED_SIZE,
+            [self.axis * 2 + usize::from(self.any_before), 0, 0],
+            !wanted.is_empty(),
+        );
+        self.any_before = any;
+        if !any {
+            self.before.fill(0);
+            return Ok(());
+        }
+        model.check()?;
+        let mut last = false;
+        for point in 0..self.points {
+            let by = wanted.iter().find(|c| usize::from(c.point) == point).map_or(0, |c| i32::from(c.by));
+            let is_touched = hints.track_of.get(point).is_some_and(|track| *track != UNTOUCHED);
+            let before = self.before[point];
+            let context = usize::from(before != 0) * 4 + usize::from(is_touched) * 2 + usize::from(last);
+            last = model.flag(CORRECTED, [context, 0, 0], by != 0);
+            let by = if last {
+                model
+                    .signed(CORRECTION, [class(before.into(), [0, 1]), 0, 0], by)
+                    .clamp(i16::MIN.into(), i16::MAX.into())
+            } else {
+                0
+            };
+            self.before[point] = by as i16;
+            if by != 0 && !C::WRITES {
+                self.list.push(Correction { size: size as u16, point: point as u16, by: by as i16 });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Encodes the moves of a shared track.
+pub fn encode_shared(level: i16, moves: &[i16], scale: Scale) -> Vec<u8> {
+    let mut model = ContextModel::new(Encoder::new(), &OUTLINE_PRIOR);
+    code_shared(&mut model, level, &mut moves.to_vec(), scale, scale.sizes());
+    model.coder.finish()
+}
+
+/// Codes the moves of a shared track at the first so many sizes; a reader's `moves` are empty.
+pub fn code_shared<C: Coder>(
+    model: &mut ContextModel<'_, C>,
+    level: i16,
+    moves: &mut Vec<i16>,
+    scale: Scale,
+    sizes: usize,
+) {
+    positions::code_shared(model, level, positions::scales(scale).take(sizes), moves);
+}
+
+/// Decodes the moves of a shared track at the first so many sizes.
+///
+/// # Errors
+///
+/// `Malformed` for bytes that end early or late.
+pub fn decode_shared(bytes: &[u8], level: i16, scale: Scale, sizes: usize) -> Result<Vec<i16>, Damage> {
+    let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
+    let mut moves = Vec::with_capacity(sizes);
+    code_shared(&mut model, level, &mut moves, scale, sizes);
+    model.check()?;
+    if sizes == scale.sizes() {
+        model.coder.finish().map_err(malformed_end)?;
+    }
+    Ok(moves)
+}
+
+/// Encodes a list of grid offsets.
+pub fn encode_list(list: &[i8]) -> Vec<u8> {
+    let mut model = ContextModel::new(Encoder::new(), &OUTLINE_PRIOR);
+    code_list(&mut model, &mut list.to_vec());
+    model.coder.finish()
+}
+
+/// Decodes a list of grid offsets.
+///
+/// # Errors
+///
+/// `Malformed` for bytes that end early or late.
+pub fn decode_list(bytes: &[u8], sizes: usize) -> Result<Vec<i8>, Damage> {
+    let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
+    let mut list = alloc::vec![0; sizes];
+    code_list(&mut model, &mut list);
+    model.coder.finish().map_err(malformed_end)?;
+    Ok(list)
+}
+
+/// Codes a list of grid offsets.
+pub fn code_list<C: Coder>(model: &mut ContextModel<'_, C>, list: &mut [i8]) {
+    let mut before = [0i32; 2];
+    for offset in list {
+        let context = class(before[0], [0, 1]) * 3 + class(before[1], [0, 1]);
+        let step = model.signed(OUTLINE_GRID_OFFSET, [context, 0, 0], i32::from(*offset) - before[0]);
+        *offset = before[0].wrapping_add(step) as i8;
+        before = [(*offset).into(), before[0]];
+    }
+}
+
+/// The scale of a font's trained size in pixels per em, as hints count on.
+pub fn scale_at(scale: Scale, size: usize) -> i32 {
+    scale_of(scale.ppem_of(size) as f32, scale.units_per_em())
+}

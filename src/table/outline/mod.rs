@@ -1,0 +1,15 @@
+//! The coding of outline models.
+
+mod codec;
+mod index;
+mod parts;
+mod positions;
+mod rules;
+mod shared;
+mod structure;
+
+pub use codec::*;
+pub use index::{OutlineIndex, pack};
+pub use parts::*;
+pub use positions::{Choose, Price, Question};
+pub use shared::{Shared, Source};

@@ -1,0 +1,203 @@
+//! Coding of an axis's tracks: which levels of the outline have one, which points belong to it, and where its moves come from.
+
+use alloc::vec::Vec;
+
+use super::shared::{Shared, Source};
+use crate::error::Damage;
+use crate::model::outline::{AxisHints, MAX_TRACKS, OutlinePoints, UNTOUCHED};
+use crate::table::context_model::{ContextModel, class};
+use crate::table::damage::{malformed, too_large};
+use crate::table::elements::{SHARED, SOURCE, SUBTRACK, TRACK, UNUSUAL};
+use crate::table::range::Coder;
+
+/// The context of [`UNUSUAL`] for a level with several tracks.
+const SPLIT: usize = 5;
+
+/// The points of one level.
+struct Level {
+    units: i16,
+    /// Their numbers.
+    points: Vec<u16>,
+    /// 2 for the lowest and the highest of the glyph, 1 for those of a contour, else 0.
+    extreme: usize,
+    on_curve: usize,
+    /// Whether two of them follow each other.
+    is_flat: bool,
+}
+
+/// The levels of an outline along an axis, ascending.
+fn levels(points: &OutlinePoints, axis: usize) -> Vec<Level> {
+    let coordinates = &points.coordinates[axis];
+    let mut order: Vec<u16> = (0..points.len() as u16).collect();
+    order.sort_by_key(|point| (coordinates[usize::from(*point)], *point));
+    let mut levels: Vec<Level> = Vec::new();
+    for point in order {
+        let units = coordinates[usize::from(point)];
+        if levels.last().is_none_or(|level| level.units != units) {
+            levels.push(Level { units, points: Vec::new(), extreme: 0, on_curve: 0, is_flat: false });
+        }
+        if let Some(level) = levels.last_mut() {
+            level.points.push(point);
+            level.on_curve += usize::from(points.on_curve[usize::from(point)]);
+        }
+    }
+    let mut find = |units: i16, change: &dyn Fn(&mut Level)| {
+        if let Ok(at) = levels.binary_search_by_key(&units, |level| level.units) {
+            change(&mut levels[at]);
+        }
+    };
+    for contour in points.contours() {
+        let Some(own) = coordinates.get(contour) else { continue };
+        for extreme in [own.iter().min(), own.iter().max()].into_iter().flatten() {
+            find(*extreme, &|level| level.extreme = 1);
+        }
+        for (a, b) in own.iter().zip(own.iter().cycle().skip(1)) {
+            if a == b && own.len() > 1 {
+                find(*a, &|level| level.is_flat = true);
+            }
+        }
+    }
+    let last = levels.len().saturating_sub(1);
+    for at in [0, last] {
+        if let Some(level) = levels.get_mut(at) {
+            level.extreme = 2;
+        }
+    }
+    levels
+}
+
+/// Codes the tracks of an axis and their sources.
+pub(super) fn code<C: Coder>(
+    model: &mut ContextModel<'_, C>,
+    points: &OutlinePoints,
+    units_per_em: u16,
+    axis: usize,
+    hints: &mut AxisHints,
+    sources: &mut Vec<Source>,
+    shared: &Shared<'_>,
+) -> Result<(), Damage> {
+    hints.track_of.resize(points.len(), UNTOUCHED);
+    let mut tracks = Tracks { last: i32::from(i16::MIN), before: [false; 2], levels: Vec::new() };
+    for (at, level) in levels(points, axis).iter().enumerate() {
+        tracks.code(model, at, level, units_per_em, hints)?;
+        model.check()?;
+    }
+    if !C::WRITES {
+        hints.levels = tracks.levels;
+    }
+    sources.resize(hints.levels.len(), Source::Own);
+    for (level, source) in hints.levels.iter().zip(sources) {
+        *source = code_source(model, axis, *level, *source, shared)?;
+    }
+    model.check()
+}
+
+/// The tracks that are coded so far.
+struct Tracks {
+    /// The last level with a track.
+    last: i32,
+    /// Whether each of the last two levels had one.
+    before: [bool; 2],
+    levels: Vec<i16>,
+}
+
+impl Tracks {
+    fn code<C: Coder>(
+        &mut self,
+        model: &mut ContextModel<'_, C>,
+        at: usize,
+        level: &Level,
+        units_per_em: u16,
+        hints: &mut AxisHints,
+    ) -> Result<(), Damage> {
+        let first = self.levels.len();
+        let thousandths = |units: i32| (units.max(0) * 1000 / i32::from(units_per_em)).min(10_000);
+        let units = i32::from(level.units);
+        let is_near = class(thousandths(units - self.last), [10, 25, 60, 120, 250]);
+        let contexts = [
+            level.extreme * 8 + (level.points.len().min(4) - 1) * 2 + usize::from(level.is_flat),
+            is_near * 3 + level.on_curve.min(2),
+            usize::from(self.before[0]) * 12 + usize::from(self.before[1]) * 6 + at.min(5),
+        ];
+        let own = |point: &u16| hints.track_of[usize::from(*point)];
+        let count = if C::WRITES { subtracks(level.points.iter().map(own), first) } else { 0 };
+        let has_track = model.flag(TRACK, contexts, count > 0);
+        self.before = [has_track, self.before[0]];
+        if !has_track {
+            return Ok(());
+        }
+        self.last = units;
+        let is_whole = count == 1 && level.points.iter().all(|point| usize::from(own(point)) == first);
+        let mut count = 1;
+        if model.flag(UNUSUAL, [SPLIT, 0, 0], !is_whole) {
+            count = 0;
+            for (k, point) in level.points.iter().enumerate() {
+                let track = &mut hints.track_of[usize::from(*point)];
+                let sub = if *track == UNTOUCHED { 0 } else { usize::from(*track).wrapping_sub(first) + 1 };
+                let sub = model.positive(SUBTRACK, [k.min(1), 0, 0], sub as u32 + 1) as usize - 1;
+                if sub > count + 1 {
+                    return Err(malformed("skips a track"));
+                }
+                count = count.max(sub);
+                *track = if sub == 0 { UNTOUCHED } else { (first + sub - 1).min(MAX_TRACKS) as u8 };
+            }
+        } else {
+            level
+                .points
+                .iter()
+                .for_each(|point| hints.track_of[usize::from(*point)] = first.min(MAX_TRACKS) as u8);
+        }
+        self.levels.resize(first + count, level.units);
+        if self.levels.len() > MAX_TRACKS {
+            return Err(too_large("tracks", self.levels.len() as i32, MAX_TRACKS as i32));
+        }
+        Ok(())
+    }
+}
+
+/// The number of tracks, counted from `first`, that some points belong to.
+fn subtracks(tracks: impl Iterator<Item = u8>, first: usize) -> usize {
+    let numbers = tracks.filter(|track| *track != UNTOUCHED).map(|track| usize::from(track) + 1);
+    numbers.max().map_or(0, |end| end.saturating_sub(first))
+}
+
+fn code_source<C: Coder>(
+    model: &mut ContextModel<'_, C>,
+    axis: usize,
+    level: i16,
+    source: Source,
+    shared: &Shared<'_>,
+) -> Result<Source, Damage> {
+    let same = shared.of_level(axis, level);
+    let kind = match source {
+        Source::Own => 0,
+        Source::Same(_) => 1,
+        Source::Near(_) => 2,
+    };
+    let kind = model.bits(SOURCE, axis * 3 + same.len().min(2), 2, kind);
+    let number = |model: &mut ContextModel<'_, C>, context: usize, number: usize| {
+        model.positive(SHARED, [axis * 2 + context, 0, 0], number as u32 + 1) as usize - 1
+    };
+    match kind {
+        0 => Ok(Source::Own),
+        1 => {
+            let at = if let Source::Same(at) = source { usize::from(at) - same.start } else { 0 };
+            let at = same.start.saturating_add(number(model, 0, at));
+            if same.contains(&at) {
+                Ok(Source::Same(at as u16))
+            } else {
+                Err(malformed("refers to no shared track"))
+            }
+        }
+        2 => {
+            let rank = match source {
+                Source::Near(at) if C::WRITES => shared.rank(axis, level, at.into()),
+                _ => 0,
+            };
+            let rank = number(model, 1, rank);
+            let at = shared.of_rank(axis, level, rank).ok_or(malformed("refers to no shared track"))?;
+            Ok(Source::Near(at as u16))
+        }
+        _ => Err(malformed("has a track of an unknown kind")),
+    }
+}
