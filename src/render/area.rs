@@ -1,6 +1,7 @@
 //! Coverage accumulation: the area that polygons cover of each pixel, in integers, so that the order of additions does not
-//! matter. Where an edge crosses the borders of pixels is computed as in FreeType's `ftgrays.c` (2.11 and later,
-//! `gray_render_line`), which zeno ports, so that the same polygon gives the same coverage to the last bit.
+//! matter. Where an edge crosses the borders of pixels is computed as in zeno 0.3, after FreeType's `ftgrays.c`
+//! (`gray_render_line`), so that the same polygon gives the same coverage as in zeno to the last bit. FreeType itself may use
+//! finer reciprocals.
 //!
 //! FreeType sums the heights of edges along rows. Here widths are summed down columns, many columns at once: an edge changes
 //! the coverage of the pixels that it passes through, and by its width that of all pixels below them. A vertical edge has no

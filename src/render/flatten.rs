@@ -1,5 +1,5 @@
-//! Contours as polygons: curves are split as in FreeType's `ftgrays.c` (`gray_render_conic`), so that the polygons are the
-//! same.
+//! Contours as polygons: curves are split as in zeno 0.3, after FreeType's `ftgrays.c` (`gray_render_conic`), so that
+//! the polygons are those of zeno.
 
 use alloc::vec::Vec;
 use core::ops::Range;

@@ -15,7 +15,7 @@ use crate::number::mul_fixed;
 use crate::options::DrawOptions;
 use crate::placement::Placement;
 
-/// Decoded models take up to this many bytes unless the caller says otherwise: about 700 glyphs.
+/// Decoded models take up to this many bytes unless the caller says otherwise: about 700 fields.
 const DEFAULT_CACHE: usize = 8 << 20;
 
 /// Draws a font's glyphs, one thread at a time. Decoded models are kept, and working memory is reused: a glyph that is in

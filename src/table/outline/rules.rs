@@ -28,7 +28,8 @@ impl Neighbours {
     }
 }
 
-/// The order in which tracks are coded: the lowest, the highest, and then the middle of each gap, the wider gaps first.
+/// The order in which tracks are coded: the lowest, the highest, and then the middle of each gap, which
+/// makes two gaps at the end of the line.
 pub(super) fn coding_order(count: usize) -> Vec<(usize, Neighbours)> {
     let mut order = Vec::with_capacity(count);
     if count > 0 {
@@ -109,7 +110,7 @@ impl View<'_> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scores([u16; RULES]);
 
-/// The initial scores by the kind of neighbours, in 1/256.
+/// The initial scores by the kind of neighbours, in 1/256. The third row, an upper neighbour alone, does not occur in this order.
 const INITIAL: [[u8; RULES]; 4] = [
     [150, 40, 120, 40, 0, 0, 0, 0, 0, 0, 0, 0, 0, 200],
     [120, 30, 80, 40, 130, 40, 20, 120, 0, 0, 0, 0, 0, 200],

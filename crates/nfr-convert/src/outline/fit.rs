@@ -89,13 +89,12 @@ fn fit_axis(
         let saved = clusters[k].contours.iter().zip(&after).map(|(c, after)| errors[*c] - after).sum::<f64>();
         (saved, after)
     };
-    // The lowest and the highest level of what moves begin.
-    let moving: Vec<usize> = (0..clusters.len()).collect();
-    for k in [moving.first(), moving.last()].into_iter().flatten() {
-        if !chosen[*k] {
-            let (_, after) = gain(&mut chosen, &errors, *k);
-            chosen[*k] = true;
-            clusters[*k].contours.iter().zip(after).for_each(|(c, after)| errors[*c] = after);
+    // The lowest and the highest level begin.
+    for k in [0, clusters.len() - 1] {
+        if !chosen[k] {
+            let (_, after) = gain(&mut chosen, &errors, k);
+            chosen[k] = true;
+            clusters[k].contours.iter().zip(after).for_each(|(c, after)| errors[*c] = after);
         }
     }
     // A gain that was small stays small, mostly: the candidates with the highest last gain are tried first.
@@ -114,8 +113,7 @@ fn fit_axis(
                 best = Some((k, saved, after));
             }
         }
-        let Some((k, saved, after)) = best.filter(|(_, saved, _)| *saved > price.max(1e-9)) else { break };
-        let _ = saved;
+        let Some((k, _, after)) = best.filter(|(_, saved, _)| *saved > price.max(1e-9)) else { break };
         chosen[k] = true;
         clusters[k].contours.iter().zip(after).for_each(|(c, after)| errors[*c] = after);
     }
