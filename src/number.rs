@@ -47,9 +47,14 @@ pub fn mul_fixed(value: i32, by: i32) -> i32 {
 #[inline]
 pub(crate) fn div_fixed(value: i32, by: i32) -> i32 {
     let negative = (value < 0) != (by < 0);
-    let (value, by) = (u64::from(value.unsigned_abs()), u64::from(by.unsigned_abs()));
-    let quotient =
-        ((value << 16) + (by >> 1)).checked_div(by).map_or(i32::MAX, |q| q.min(i32::MAX as u64) as i32);
+    let (value, by) = (value.unsigned_abs(), by.unsigned_abs());
+    let quotient = if value < 1 << 15 && by < 1 << 16 {
+        // 32 bits are enough, and a shorter division is a faster one.
+        ((value << 16) + (by >> 1)).checked_div(by).map_or(i32::MAX, |q| q.min(i32::MAX as u32) as i32)
+    } else {
+        let (value, by) = (u64::from(value), u64::from(by));
+        ((value << 16) + (by >> 1)).checked_div(by).map_or(i32::MAX, |q| q.min(i32::MAX as u64) as i32)
+    };
     if negative { -quotient } else { quotient }
 }
 

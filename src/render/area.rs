@@ -15,7 +15,7 @@ use crate::number::{UNIT, UNIT_BITS as SHIFT};
 
 const MASK: i32 = UNIT - 1;
 /// Reciprocals count so many units to one.
-const RECIPROCAL: i32 = (1 << 24) - 1;
+const RECIPROCAL: u32 = (1 << 24) - 1;
 /// Twice the area of a pixel, in square units, is 256 times as much as one level of coverage, as a shift.
 const LEVEL_BITS: i32 = 2 * SHIFT + 1 - 8;
 /// Pixels that are summed at once.
@@ -30,13 +30,21 @@ struct Block {
     area: [i32; LANES],
 }
 
+/// What the rows above one cover of adjacent columns.
+#[derive(Debug, Clone, Copy)]
+struct Columns {
+    cover: i32x8,
+    /// The coverage of pixels that no edge passes through, if it is known.
+    coverage: Option<[u8; LANES]>,
+}
+
 /// Accumulates the coverage of one bitmap.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Area {
     /// Rows of `stride` blocks, the first of which is above the bitmap; all zero between two bitmaps.
     blocks: Vec<Block>,
-    /// The cover of all rows above the current one.
-    sums: Vec<i32x8>,
+    /// What all rows above the current one cover.
+    columns: Vec<Columns>,
     width: usize,
     height: usize,
     stride: usize,
@@ -61,11 +69,21 @@ impl Area {
     /// Adds a polygon, given by its vertices' coordinates along x and y, in units from the upper left corner, y down. Its
     /// vertices lie within the bitmap; with `CLIP`, only between its upper and its lower border.
     pub(super) fn polygon<const CLIP: bool>(&mut self, x: &[i32], y: &[i32]) {
-        let (Some(&last_x), Some(&last_y)) = (x.last(), y.last()) else { return };
         let bottom = (self.height as i32) << SHIFT;
-        let [mut xa, mut ya] = [last_x, bottom - last_y];
-        for (&xb, &y) in x.iter().zip(y) {
-            let yb = bottom - y;
+        self.closed::<CLIP>(x.iter().zip(y).map(|(x, y)| [*x, bottom - y]));
+    }
+
+    /// Adds a polygon whose vertices are given with y up, from wherever the lower left corner is at `corner`.
+    pub(super) fn polygon_up<const CLIP: bool>(&mut self, x: &[i32], y: &[i32], corner: [i32; 2]) {
+        self.closed::<CLIP>(x.iter().zip(y).map(|(x, y)| [x - corner[0], y - corner[1]]));
+    }
+
+    /// Adds the edges between vertices, the last one and the first one included. Coordinates are from the lower left corner, y
+    /// up.
+    #[inline(always)]
+    fn closed<const CLIP: bool>(&mut self, vertices: impl DoubleEndedIterator<Item = [i32; 2]> + Clone) {
+        let Some([mut xa, mut ya]) = vertices.clone().next_back() else { return };
+        for [xb, yb] in vertices {
             if same_pixel(xa ^ xb | ya ^ yb) {
                 self.add::<CLIP>(ya >> SHIFT, xa >> SHIFT, xb - xa, (ya & MASK) + (yb & MASK));
             } else if xa != xb {
@@ -79,47 +97,59 @@ impl Area {
     /// the lower border: all roundings go to the left and down.
     #[inline]
     fn edge<const CLIP: bool>(&mut self, a: [i32; 2], b: [i32; 2]) {
-        let [mut column, mut row] = a.map(|v| v >> SHIFT);
-        let [last_column, last_row] = b.map(|v| v >> SHIFT);
-        let [mut x, mut y] = a.map(|v| v & MASK);
         if a[1] == b[1] {
-            self.level_edge::<CLIP>(row, [a[0], b[0]], y);
-            return;
+            return self.level_edge::<CLIP>(a[1] >> SHIFT, [a[0], b[0]], a[1] & MASK);
         }
-        let (dx, dy) = (i64::from(b[0] - a[0]), i64::from(b[1] - a[1]));
+        match (a[0] < b[0], a[1] < b[1]) {
+            (false, false) => self.sloped_edge::<CLIP, false, false>(a, b),
+            (false, true) => self.sloped_edge::<CLIP, false, true>(a, b),
+            (true, false) => self.sloped_edge::<CLIP, true, false>(a, b),
+            (true, true) => self.sloped_edge::<CLIP, true, true>(a, b),
+        }
+    }
+
+    /// An edge that goes to the right or to the left, and up or down.
+    fn sloped_edge<const CLIP: bool, const RIGHT: bool, const UP: bool>(&mut self, a: [i32; 2], b: [i32; 2]) {
+        let [mut column, mut row] = a.map(|v| v >> SHIFT);
+        let [mut x, mut y] = a.map(|v| v & MASK);
+        let [dx, dy] = [0, 1].map(|axis| i64::from(b[axis] - a[axis]));
         let (across, up) = (dx << SHIFT, dy << SHIFT);
-        let reciprocal = |from: i32, to: i32, length: i64| {
-            if from == to { 0 } else { i64::from(RECIPROCAL / length as i32) }
+        let columns = (b[0] >> SHIFT).abs_diff(column);
+        let rows = (b[1] >> SHIFT).abs_diff(row);
+        let reciprocal = |pixels: u32, from: i32, to: i32| {
+            if pixels == 0 { 0 } else { i64::from(RECIPROCAL / to.abs_diff(from)) }
         };
-        let per_x = reciprocal(column, last_column, dx);
-        let per_y = reciprocal(row, last_row, dy);
+        let per_x = reciprocal(columns, a[0], b[0]);
+        let per_y = reciprocal(rows, a[1], b[1]);
         // How far the edge's line passes the pixel's lower left corner, times its length: positive if it passes on the left.
         let mut side = dx * i64::from(y) - dy * i64::from(x);
-        while column != last_column || row != last_row {
-            // Through which border of the pixel the edge goes on: left, upper, right or lower.
-            let (from, step);
+        for _ in 0..columns + rows {
+            let to_side = match (RIGHT, UP) {
+                (true, true) => side - across + up <= 0,
+                (true, false) => side + up >= 0,
+                (false, true) => side - across > 0,
+                (false, false) => side <= 0,
+            };
             let (next, until);
-            if side <= 0 && side - across > 0 {
-                (next, until) = (0, divide(-side, -per_x));
-                (from, step) = ([UNIT, until], [-1, 0]);
-                side -= up;
-            } else if side - across <= 0 && side - across + up > 0 {
-                side -= across;
-                (next, until) = (divide(-side, per_y), UNIT);
-                (from, step) = ([next, 0], [0, 1]);
-            } else if side - across + up <= 0 && side + up >= 0 {
-                side += up;
-                (next, until) = (UNIT, divide(side, per_x));
-                (from, step) = ([0, until], [1, 0]);
+            let enter;
+            if to_side {
+                until = divide(if RIGHT { side + up } else { -side }, per_x);
+                side = if RIGHT { side + up } else { side - up };
+                next = if RIGHT { UNIT } else { 0 };
+                enter = [UNIT - next, until];
             } else {
-                (next, until) = (divide(side, -per_y), 0);
-                (from, step) = ([next, UNIT], [0, -1]);
-                side += across;
+                next = divide(if UP { across - side } else { side }, per_y);
+                side = if UP { side - across } else { side + across };
+                until = if UP { UNIT } else { 0 };
+                enter = [next, UNIT - until];
             }
             self.add::<CLIP>(row, column, next - x, y + until);
-            [x, y] = from;
-            column += step[0];
-            row += step[1];
+            [x, y] = enter;
+            if to_side {
+                column += if RIGHT { 1 } else { -1 };
+            } else {
+                row += if UP { 1 } else { -1 };
+            }
         }
         self.add::<CLIP>(row, column, (b[0] & MASK) - x, y + (b[1] & MASK));
     }
@@ -152,13 +182,17 @@ impl Area {
 
     /// Writes the coverage, top row first, in rows that begin `stride` bytes apart.
     pub(super) fn finish(&mut self, stride: usize, pixels: &mut [u8]) {
-        self.sums.clear();
+        self.columns.clear();
         let mut rows = self.blocks.chunks_exact_mut(self.stride).take(self.height + 1);
         if let Some(above) = rows.next() {
-            self.sums.extend(above.iter_mut().map(|block| i32x8::new(core::mem::take(block).cover)));
+            let columns = |block: &mut Block| Columns {
+                cover: i32x8::new(core::mem::take(block).cover),
+                coverage: None,
+            };
+            self.columns.extend(above.iter_mut().map(columns));
         }
         for (blocks, pixels) in rows.zip(pixels.chunks_mut(stride)) {
-            write_row(blocks, &mut self.sums, &mut pixels[..self.width]);
+            write_row(blocks, &mut self.columns, &mut pixels[..self.width]);
         }
     }
 }
@@ -176,12 +210,19 @@ fn divide(value: i64, reciprocal: i64) -> i32 {
     ((value * reciprocal) >> (32 - SHIFT)) as i32
 }
 
-/// Writes the coverage of a row of blocks below what the sums stand for, adds them to the sums, and clears them.
-fn write_row(blocks: &mut [Block], sums: &mut [i32x8], pixels: &mut [u8]) {
-    for ((block, sum), pixels) in blocks.iter_mut().zip(sums).zip(pixels.chunks_mut(LANES)) {
-        let Block { cover, area } = core::mem::take(block);
-        let coverage = block_coverage((*sum << (SHIFT + 1)) + i32x8::new(area));
-        *sum += i32x8::new(cover);
+/// Writes the coverage of a row of blocks, adds them to what is above the next row, and clears them.
+fn write_row(blocks: &mut [Block], columns: &mut [Columns], pixels: &mut [u8]) {
+    for ((block, above), pixels) in blocks.iter_mut().zip(columns).zip(pixels.chunks_mut(LANES)) {
+        let (cover, area) = (i32x8::new(block.cover), i32x8::new(block.area));
+        let plain = above.cover << (SHIFT + 1);
+        let coverage = if (cover | area) == i32x8::splat(0) {
+            // No edge passes through, as through most pixels of a large bitmap.
+            *above.coverage.get_or_insert_with(|| block_coverage(plain))
+        } else {
+            *block = Block::default();
+            *above = Columns { cover: above.cover + cover, coverage: None };
+            block_coverage(plain + area)
+        };
         match <&mut [u8; LANES]>::try_from(&mut *pixels) {
             Ok(pixels) => *pixels = coverage,
             Err(_) => pixels.copy_from_slice(&coverage[..pixels.len()]),

@@ -21,6 +21,8 @@ pub(super) struct Polygons {
     pub(super) vertices: [Vec<i32>; 2],
     /// Where each polygon ends.
     pub(super) ends: Vec<usize>,
+    /// The least and the greatest coordinates along x and y, once they are [measured](Self::measure).
+    pub(super) bounds: [[i32; 2]; 2],
 }
 
 type Point = [i32; 2];
@@ -30,6 +32,28 @@ impl Polygons {
     pub(super) fn clear(&mut self) {
         self.vertices.iter_mut().for_each(Vec::clear);
         self.ends.clear();
+    }
+
+    /// Becomes a copy of others, in the memory that is there.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        for (own, other) in self.vertices.iter_mut().zip(&other.vertices) {
+            own.clone_from(other);
+        }
+        self.ends.clone_from(&other.ends);
+        self.bounds = other.bounds;
+    }
+
+    /// Finds the bounds.
+    pub(super) fn measure(&mut self) {
+        self.bounds = self.vertices.each_ref().map(|vertices| {
+            vertices.iter().fold([i32::MAX, i32::MIN], |[low, high], v| [low.min(*v), high.max(*v)])
+        });
+    }
+
+    /// The memory that the polygons take, in bytes.
+    pub(super) fn memory(&self) -> usize {
+        self.vertices.iter().map(|vertices| vertices.capacity() * size_of::<i32>()).sum::<usize>()
+            + self.ends.capacity() * size_of::<usize>()
     }
 
     /// Adds an outline whose points are at `places`, in 1/64 pixel, moved by `offset` in the same.

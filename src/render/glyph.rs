@@ -5,7 +5,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::draw::{draw, draw_one};
-use super::outline::draw_outlines;
+use super::flatten::Polygons;
+use super::outline::{draw_polygons, flatten};
 use super::scratch::Scratch;
 use crate::bitmap::{Bitmap, Canvas};
 use crate::error::Error;
@@ -44,6 +45,24 @@ pub(super) struct Outlines {
     /// The hinted advance width at each size, in whole pixels less the scaled one, rounded; empty if all are 0.
     pub(super) advances: Vec<i8>,
 }
+
+/// A glyph's outlines at the last size that they were drawn at, as polygons: text is drawn at one size many times, at other
+/// positions.
+#[derive(Debug, Default)]
+pub(super) struct Flattened {
+    ppem: f32,
+    polygons: Polygons,
+}
+
+impl Flattened {
+    /// The memory that it takes, in bytes.
+    pub(super) fn memory(&self) -> usize {
+        self.polygons.memory()
+    }
+}
+
+/// Polygons with more vertices are not kept.
+const MAX_KEPT: usize = 256;
 
 /// A decoded model that glyphs share.
 #[derive(Debug, Clone)]
@@ -180,6 +199,17 @@ impl Glyph {
         scratch: &mut Scratch,
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
+        self.draw_kept(&mut Flattened::default(), options, scratch, room)
+    }
+
+    /// The same. `kept` is what was kept of this glyph when it was drawn before.
+    pub(super) fn draw_kept<'b>(
+        &self,
+        kept: &mut Flattened,
+        options: DrawOptions,
+        scratch: &mut Scratch,
+        room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+    ) -> Result<Option<Placement>, Error> {
         let options = options.checked()?;
         let room = |placement: Placement| {
             self.limits.check_sides(placement.width, placement.height)?;
@@ -187,15 +217,7 @@ impl Glyph {
         };
         let mut budget = Budget::new(self.glyph, &self.limits);
         match &self.drawn {
-            Drawn::Outlines(Outlines { parts, .. }) => {
-                let Some((first, _)) = parts.first() else {
-                    return Ok(room(Placement::default())?.map(|_| Placement::default()));
-                };
-                let size = first.scale.at(options.ppem);
-                let units = first.scale.units_per_em();
-                let parts = parts.iter().map(|(model, part)| (&**model, part.offset_at(&size, units)));
-                draw_outlines(parts, &size, options, scratch, &mut budget, room)
-            }
+            Drawn::Outlines(outlines) => outlines.draw(kept, options, scratch, &mut budget, room),
             Drawn::Fields(parts) => self.draw_parts(parts, options, scratch, &mut budget, room),
             #[cfg(feature = "networks")]
             Drawn::Network(network) => network.draw(self.glyph, options, &mut budget, room),
@@ -241,6 +263,36 @@ impl Glyph {
             #[cfg(feature = "networks")]
             Drawn::Network(network) => network.memory(),
         }
+    }
+}
+
+impl Outlines {
+    fn draw<'b>(
+        &self,
+        kept: &mut Flattened,
+        options: DrawOptions,
+        scratch: &mut Scratch,
+        budget: &mut Budget,
+        room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+    ) -> Result<Option<Placement>, Error> {
+        if kept.ppem == options.ppem {
+            return draw_polygons(&kept.polygons, options, scratch, budget, room);
+        }
+        let Some((first, _)) = self.parts.first() else {
+            return Ok(room(Placement::default())?.map(|_| Placement::default()));
+        };
+        let size = first.scale.at(options.ppem);
+        let units = first.scale.units_per_em();
+        let parts = self.parts.iter().map(|(model, part)| (&**model, part.offset_at(&size, units)));
+        flatten(parts, &size, scratch, budget)?;
+        let polygons = core::mem::take(&mut scratch.polygons);
+        if polygons.vertices[0].len() <= MAX_KEPT {
+            kept.ppem = options.ppem;
+            kept.polygons.copy_from(&polygons);
+        }
+        let drawn = draw_polygons(&polygons, options, scratch, budget, room);
+        scratch.polygons = polygons;
+        drawn
     }
 }
 

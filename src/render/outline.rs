@@ -57,23 +57,21 @@ pub(super) fn draw_plain<'b>(
         room(placement)
     };
     let mut budget = Budget::new(glyph, limits);
-    draw_outlines(core::iter::once((&model, [0; 2])), &size, options, scratch, &mut budget, room)
+    flatten(core::iter::once((&model, [0; 2])), &size, scratch, &mut budget)?;
+    draw_flattened(options, scratch, &mut budget, room)
 }
 
-/// Draws outlines, each moved by an offset in 1/64 pixel, into the canvas that `room` gives for the placement of all of them,
-/// if it gives one. Pixels are what they cover together.
+/// Hints outlines at a size, each moved by an offset in 1/64 pixel, and makes them the polygons of `scratch`.
 ///
 /// # Errors
 ///
-/// As `room`, `BitmapTooLarge`, and `TooMuchWork`.
-pub(super) fn draw_outlines<'m, 'b>(
+/// `BitmapTooLarge` and `TooMuchWork`.
+pub(super) fn flatten<'m>(
     models: impl Iterator<Item = (&'m OutlineModel, [i32; 2])>,
     size: &HintedSize,
-    options: DrawOptions,
     scratch: &mut Scratch,
     budget: &mut Budget,
-    room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
-) -> Result<Option<Placement>, Error> {
+) -> Result<(), Error> {
     let Scratch { outline: points, polygons, .. } = scratch;
     polygons.clear();
     for (model, offset) in models {
@@ -84,21 +82,54 @@ pub(super) fn draw_outlines<'m, 'b>(
             budget.spend(u64::MAX)?;
         }
     }
+    polygons.measure();
+    Ok(())
+}
+
+/// Draws the polygons of `scratch` into the canvas that `room` gives for their placement, if it gives one. Pixels are what
+/// they cover together.
+///
+/// # Errors
+///
+/// As `room`, `BitmapTooLarge`, and `TooMuchWork`.
+fn draw_flattened<'b>(
+    options: DrawOptions,
+    scratch: &mut Scratch,
+    budget: &mut Budget,
+    room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+) -> Result<Option<Placement>, Error> {
+    let polygons = core::mem::take(&mut scratch.polygons);
+    let drawn = draw_polygons(&polygons, options, scratch, budget, room);
+    scratch.polygons = polygons;
+    drawn
+}
+
+/// Draws polygons into the canvas that `room` gives for their placement, if it gives one. Pixels are what they cover
+/// together.
+///
+/// # Errors
+///
+/// As `room`, `BitmapTooLarge`, and `TooMuchWork`.
+pub(super) fn draw_polygons<'b>(
+    polygons: &Polygons,
+    options: DrawOptions,
+    scratch: &mut Scratch,
+    budget: &mut Budget,
+    room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+) -> Result<Option<Placement>, Error> {
     let offset = options.offset.map(|pixels| round(pixels * UNIT as f32));
     let placement = place(polygons, offset)?;
     let Some(mut canvas) = room(placement)? else { return Ok(None) };
     budget.spend(placement.area() as u64)?;
-    to_corner(polygons, placement, offset);
+    let bottom = (placement.top - placement.height as i32) * UNIT - offset[1];
     in_strips::<STRIP>(placement, scratch, &mut canvas, |strip, scratch| {
-        let Scratch { area, polygons, .. } = scratch;
+        let area = &mut scratch.area;
         budget.spend(area.most_steps(polygons.vertices[0].len()))?;
+        let corner = [strip.left * UNIT - offset[0], bottom];
         if strip.is_whole {
-            fill::<false>(area, polygons);
+            fill::<false>(area, polygons, corner);
         } else {
-            let shift = strip.left.saturating_sub(placement.left).saturating_mul(UNIT);
-            polygons.vertices[0].iter_mut().for_each(|x| *x -= shift);
-            fill::<true>(area, polygons);
-            polygons.vertices[0].iter_mut().for_each(|x| *x += shift);
+            fill::<true>(area, polygons, corner);
         }
         Ok(())
     })?;
@@ -121,28 +152,24 @@ fn check_reach(points: &[Vec<i32>; 2], offset: [i32; 2]) -> Result<(), Error> {
     Err(Error::BitmapTooLarge { width: width / 64, height: height / 64, limit: MAX_SIDE })
 }
 
-fn fill<const CLIP: bool>(area: &mut Area, polygons: &Polygons) {
+fn fill<const CLIP: bool>(area: &mut Area, polygons: &Polygons, corner: [i32; 2]) {
     let [x, y] = &polygons.vertices;
     let mut start = 0;
     for &end in &polygons.ends {
-        area.polygon::<CLIP>(&x[start..end], &y[start..end]);
+        area.polygon_up::<CLIP>(&x[start..end], &y[start..end], corner);
         start = end;
     }
 }
 
 /// The whole pixels that polygons span if they are moved by `offset` units.
 fn place(polygons: &Polygons, offset: [i32; 2]) -> Result<Placement, Error> {
-    let range = |axis: usize| {
-        let vertices = &polygons.vertices[axis];
-        let (low, high) =
-            vertices.iter().fold((i32::MAX, i32::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
-        let (low, high) = (low.saturating_add(offset[axis]), high.saturating_add(offset[axis]));
-        (low >> UNIT_BITS, high.saturating_add(UNIT - 1) >> UNIT_BITS)
-    };
     if polygons.vertices[0].is_empty() {
         return Ok(Placement::default());
     }
-    let [(left, right), (bottom, top)] = [range(0), range(1)];
+    let [(left, right), (bottom, top)] = [0, 1].map(|axis| {
+        let [low, high] = polygons.bounds[axis].map(|v| v.saturating_add(offset[axis]));
+        (low >> UNIT_BITS, high.saturating_add(UNIT - 1) >> UNIT_BITS)
+    });
     if left == right || bottom == top {
         return Ok(Placement::default());
     }
@@ -151,12 +178,4 @@ fn place(polygons: &Polygons, offset: [i32; 2]) -> Result<Placement, Error> {
         return Err(Error::BitmapTooLarge { width, height, limit: MAX_SIDE });
     }
     Ok(Placement { left, top, width, height })
-}
-
-/// Makes coordinates those from the placement's upper left corner, y down.
-fn to_corner(polygons: &mut Polygons, placement: Placement, offset: [i32; 2]) {
-    let (left, top) = (placement.left * UNIT - offset[0], placement.top * UNIT - offset[1]);
-    let [x, y] = &mut polygons.vertices;
-    x.iter_mut().for_each(|x| *x -= left);
-    y.iter_mut().for_each(|y| *y = top - *y);
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::decoder::Decoder;
 use super::font::Font;
-use super::glyph::{Glyph, fresh};
+use super::glyph::{Flattened, Glyph, fresh};
 use super::outline::draw_plain;
 use super::scratch::Scratch;
 use crate::bitmap::{Bitmap, BitmapRef, Canvas};
@@ -105,7 +105,7 @@ impl Rasterizer {
         DrawOptions::new(ppem).checked()?;
         let size = self.decoder.font().scale().at(ppem);
         let more = match self.cache.get(&mut self.decoder, glyph, ppem) {
-            Ok(decoded) => decoded.hinted_advance(&size),
+            Ok(entry) => entry.decoded.hinted_advance(&size),
             Err(Error::MissingModel(missing)) if missing == glyph => None,
             Err(error) => return Err(error),
         };
@@ -203,7 +203,15 @@ impl Rasterizer {
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
         match self.cache.get(&mut self.decoder, glyph, options.ppem) {
-            Ok(decoded) => decoded.draw(options, &mut self.scratch, room),
+            Ok(entry) => {
+                let before = entry.kept.memory();
+                let drawn = entry.decoded.draw_kept(&mut entry.kept, options, &mut self.scratch, room);
+                let after = entry.kept.memory();
+                if after != before {
+                    self.cache.resize(before, after);
+                }
+                drawn
+            }
             Err(error @ Error::MissingModel(missing)) if missing == glyph => match self.missing {
                 MissingModel::Error => Err(error),
                 MissingModel::Blank => {
@@ -238,11 +246,19 @@ struct Entry {
     /// When it was last asked for.
     used: u64,
     decoded: Glyph,
+    /// What its last drawing leaves for the next one.
+    kept: Flattened,
+}
+
+impl Entry {
+    fn memory(&self) -> usize {
+        self.decoded.memory() + self.kept.memory()
+    }
 }
 
 impl Cache {
     /// The glyph, decoded for a size at least.
-    fn get(&mut self, decoder: &mut Decoder, glyph: u32, ppem: f32) -> Result<&Glyph, Error> {
+    fn get(&mut self, decoder: &mut Decoder, glyph: u32, ppem: f32) -> Result<&mut Entry, Error> {
         self.clock += 1;
         let at = match self.find(glyph) {
             Some(at) if self.entries.get(at).is_some_and(|entry| entry.decoded.has_size(ppem)) => at,
@@ -258,7 +274,7 @@ impl Cache {
         };
         let entry = self.entries.get_mut(at).ok_or(Error::NoSuchGlyph(glyph))?;
         entry.used = self.clock;
-        Ok(&entry.decoded)
+        Ok(entry)
     }
 
     fn find(&self, glyph: u32) -> Option<usize> {
@@ -273,12 +289,20 @@ impl Cache {
             self.evict();
         }
         self.bytes += bytes;
-        self.entries.push(Entry { glyph, used: self.clock, decoded });
+        self.entries.push(Entry { glyph, used: self.clock, decoded, kept: Flattened::default() });
         if self.indices.len() <= glyph as usize {
             self.indices.resize(glyph as usize + 1, 0);
         }
         self.indices[glyph as usize] = self.entries.len() as u32;
         Ok(self.entries.len() - 1)
+    }
+
+    /// Counts an entry that has grown from one size in bytes to another.
+    fn resize(&mut self, before: usize, after: usize) {
+        self.bytes = self.bytes + after - before;
+        while self.bytes > self.limit && self.entries.len() > 1 {
+            self.evict();
+        }
     }
 
     fn evict(&mut self) {
@@ -290,10 +314,14 @@ impl Cache {
 
     fn remove(&mut self, at: usize) {
         let entry = self.entries.swap_remove(at);
-        self.bytes -= entry.decoded.memory();
+        self.bytes -= entry.memory();
         self.indices[entry.glyph as usize] = 0;
         if let Some(moved) = self.entries.get(at) {
             self.indices[moved.glyph as usize] = at as u32 + 1;
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

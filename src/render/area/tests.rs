@@ -288,26 +288,37 @@ proptest! {
     }
 
     #[test]
-    fn a_row_is_summed_as_its_pixels_are(
-        changes in vec((any::<i32>(), any::<i32>()), 24), above in vec(any::<i32>(), 24), width in 17usize..=24,
+    fn rows_are_summed_as_their_pixels_are(
+        rows in vec(vec(block(), 3), 1..5), above in vec(any::<i32>(), 24), width in 17usize..=24,
     ) {
-        let at = |k: usize| changes[k];
-        let mut blocks: Vec<Block> = (0..3)
-            .map(|b| Block {
-                cover: std::array::from_fn(|k| at(b * LANES + k).0),
-                area: std::array::from_fn(|k| at(b * LANES + k).1),
-            })
-            .collect();
-        let mut sums: Vec<i32x8> =
-            above.as_chunks::<LANES>().0.iter().map(|chunk| i32x8::new(*chunk)).collect();
-        let mut pixels = vec![0; width];
-        write_row(&mut blocks, &mut sums, &mut pixels);
-        for (k, pixel) in pixels.iter().enumerate() {
-            let area = (above[k] << (SHIFT + 1)).wrapping_add(changes[k].1);
-            prop_assert_eq!(*pixel, coverage(area), "pixel {}", k);
-            prop_assert_eq!(sums[k / LANES].to_array()[k % LANES], above[k].wrapping_add(changes[k].0));
+        let columns = |cover: &[i32; LANES]| Columns { cover: i32x8::new(*cover), coverage: None };
+        let mut columns: Vec<Columns> = above.as_chunks::<LANES>().0.iter().map(columns).collect();
+        let mut covers = above;
+        for changes in rows {
+            let mut blocks = changes.clone();
+            let mut pixels = vec![0; width];
+            write_row(&mut blocks, &mut columns, &mut pixels);
+            for (k, pixel) in pixels.iter().enumerate() {
+                let Block { cover, area } = &changes[k / LANES];
+                let (cover, area) = (cover[k % LANES], area[k % LANES]);
+                let sum = (covers[k] << (SHIFT + 1)).wrapping_add(area);
+                prop_assert_eq!(*pixel, coverage(sum), "pixel {}", k);
+                covers[k] = covers[k].wrapping_add(cover);
+                prop_assert_eq!(columns[k / LANES].cover.to_array()[k % LANES], covers[k]);
+            }
+            for Block { cover, area } in blocks {
+                prop_assert_eq!([cover, area], [[0; LANES]; 2]);
+            }
         }
     }
+}
+
+/// A block, which is often empty.
+fn block() -> impl Strategy<Value = Block> {
+    let lanes = || prop::array::uniform8(any::<i32>());
+    let nothing = || Just([0; LANES]);
+    (prop_oneof![lanes(), nothing()], prop_oneof![lanes(), nothing()])
+        .prop_map(|(cover, area)| Block { cover, area })
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn flattened(contours: &[Vec<Stop>], offset: Point) -> Polygons {
 
 /// The vertices of one contour's polygon.
 fn polygon(contour: &[Stop]) -> Vec<Point> {
-    let Polygons { vertices: [x, y], ends } = flattened(&[contour.to_vec()], [0; 2]);
+    let Polygons { vertices: [x, y], ends, .. } = flattened(&[contour.to_vec()], [0; 2]);
     assert_eq!(ends, [x.len()]);
     x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
 }
@@ -92,7 +92,7 @@ fn contour(
 fn a_contour_without_curves_is_its_points_in_units() {
     let contour = [on(1, -2), on(64, 0), on(64, 65)];
     assert_eq!(polygon(&contour), [[256, 0], [256, 260], [4, -8]]);
-    let Polygons { vertices, ends } =
+    let Polygons { vertices, ends, .. } =
         flattened(&[contour.to_vec(), Vec::new(), contour.to_vec()], [10, -100]);
     assert_eq!(vertices[0], [296, 296, 44, 296, 296, 44]);
     assert_eq!(vertices[1], [-400, -140, -408, -400, -140, -408]);
@@ -192,7 +192,7 @@ proptest! {
         let inside = |(point, on): &Stop| ([point[0] % (right + 1), point[1] % (top + 1)], *on);
         let contours: Vec<Vec<Stop>> = contours.iter().map(|contour| contour.iter().map(inside).collect()).collect();
 
-        let Polygons { vertices: [x, y], ends } = flattened(&contours, [0; 2]);
+        let Polygons { vertices: [x, y], ends, .. } = flattened(&contours, [0; 2]);
         let y: Vec<i32> = y.iter().map(|y| top * UNIT / 64 - y).collect();
         let (mut area, mut pixels, mut start) = (Area::default(), vec![77; width * height], 0);
         area.start(width, height);

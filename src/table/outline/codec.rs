@@ -134,18 +134,16 @@ pub fn code<C: Coder>(
     for (hints, corrected) in axes.iter_mut().zip(&corrected) {
         hints.is_hinted = !hints.levels.is_empty() || corrected.is_used;
     }
-    let levels = axes.each_ref().map(|hints| hints.levels.clone());
-    let mut tracks = Vec::with_capacity(2);
-    for axis in [0, 1] {
-        tracks.push(Axis::new(axis, &levels[axis], shared_moves(known, axis, &sources[axis], sizes)?));
-    }
+    let tracks =
+        |axis: usize| Ok::<_, Damage>(Axis::new(axis, shared_moves(known, axis, &sources[axis], sizes)?));
+    let mut tracks = [tracks(0)?, tracks(1)?];
     let mut before = [0; 2];
     for (size, scale) in positions::scales(scale).take(sizes).enumerate() {
         model.check()?;
         for axis in [1, 0] {
-            let moves = size * levels[axis].len()..(size + 1) * levels[axis].len();
-            let Some(moves) = axes[axis].moves.get_mut(moves) else { continue };
-            tracks[axis].code(model, size, scale, moves, choose);
+            let AxisHints { levels, moves, .. } = &mut axes[axis];
+            let Some(moves) = moves.get_mut(size * levels.len()..(size + 1) * levels.len()) else { continue };
+            tracks[axis].code(model, size, scale, levels, moves, choose);
         }
         if let Some(advance) = advances.get_mut(size) {
             let context = advance_context(known.advance, scale, &axes[0], size, before);
@@ -179,13 +177,14 @@ fn shared_moves(
     sources: &[Source],
     sizes: usize,
 ) -> Result<Vec<Referred>, Damage> {
-    let referred = |number: usize, is_same: bool| {
-        Ok(Referred { moves: Some((known.shared.moves)(axis, number, sizes)?), is_same })
+    let referred = |number: usize, is_coded: bool| {
+        Ok(Referred { moves: Some((known.shared.moves)(axis, number, sizes)?), is_coded })
     };
     let moves = |source: &Source| match *source {
         Source::Own => Ok(Referred::default()),
-        Source::Same(number) => referred(number.into(), true),
-        Source::Near(number) => referred(number.into(), false),
+        Source::Same(number) => referred(number.into(), false),
+        Source::Near(number) => referred(number.into(), true),
+        Source::Still => Ok(Referred { moves: None, is_coded: false }),
     };
     sources.iter().map(moves).collect()
 }

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::rules::{Neighbours, Ranked, Scores, View, coding_order, to_grid};
+use super::rules::{Candidate, Neighbours, Ranked, Scores, View, coding_order, to_grid};
 use crate::model::outline::scale_of;
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
@@ -13,13 +13,18 @@ use crate::table::range::Coder;
 /// Gives the probabilities of the bits of a move to its second argument.
 pub type Price<'q> = dyn Fn(i32, &mut dyn FnMut(u32)) + 'q;
 
-/// The shared track that a track refers to.
-#[derive(Default)]
+/// What a track refers to.
 pub(super) struct Referred {
-    /// Its moves; none for a track of its own.
+    /// The moves of a shared track.
     pub(super) moves: Option<Vec<i16>>,
-    /// Whether they are the track's own moves.
-    pub(super) is_same: bool,
+    /// Whether the track's own moves are coded; else they are those of the shared track, or 0 without one.
+    pub(super) is_coded: bool,
+}
+
+impl Default for Referred {
+    fn default() -> Self {
+        Self { moves: None, is_coded: true }
+    }
 }
 
 /// A hinted position that is to be written.
@@ -42,41 +47,48 @@ pub struct Question<'q> {
 pub type Choose<'c> = &'c mut dyn FnMut(&Question<'_>) -> i32;
 
 /// The tracks of an axis while their positions are coded.
-pub(super) struct Axis<'a> {
+pub(super) struct Axis {
     axis: usize,
-    levels: &'a [i16],
-    order: Vec<(usize, Neighbours)>,
+    /// In the order in which they are coded.
     tracks: Vec<Track>,
     plain: Vec<i32>,
     hinted: Vec<i32>,
+    /// The hinted positions at the size before.
     before: Vec<i32>,
+    is_first: bool,
+    /// Working memory.
+    ranked: Ranked,
 }
 
-/// What is known of a track from smaller sizes.
+/// A track, and what is known of it from smaller sizes.
 struct Track {
+    number: usize,
+    neighbours: Neighbours,
     scores: Scores,
     /// Whether the first candidate was wrong at each of the last sizes, the last one lowest.
     misses: u8,
     shared: Referred,
 }
 
-impl<'a> Axis<'a> {
+impl Axis {
     /// Tracks at the first size, with the shared track that each refers to.
-    pub(super) fn new(axis: usize, levels: &'a [i16], shared: Vec<Referred>) -> Self {
-        let order = coding_order(levels.len());
-        let mut kinds = vec![0; levels.len()];
-        for (track, neighbours) in &order {
-            kinds[*track] = neighbours.kind();
-        }
-        let track = |(shared, kind)| Track { scores: Scores::new(kind), misses: 0, shared };
+    pub(super) fn new(axis: usize, mut shared: Vec<Referred>) -> Self {
+        let count = shared.len();
+        let track = |(number, neighbours): (usize, Neighbours)| Track {
+            number,
+            neighbours,
+            scores: Scores::new(neighbours.kind()),
+            misses: 0,
+            shared: shared.get_mut(number).map(core::mem::take).unwrap_or_default(),
+        };
         Self {
             axis,
-            levels,
-            order,
-            tracks: shared.into_iter().zip(kinds).map(track).collect(),
-            plain: vec![0; levels.len()],
-            hinted: vec![0; levels.len()],
-            before: Vec::new(),
+            tracks: coding_order(count).into_iter().map(track).collect(),
+            plain: vec![0; count],
+            hinted: vec![0; count],
+            before: vec![0; count],
+            is_first: true,
+            ranked: Ranked::default(),
         }
     }
 
@@ -86,44 +98,111 @@ impl<'a> Axis<'a> {
         model: &mut ContextModel<'_, C>,
         size: usize,
         scale: i32,
+        levels: &[i16],
         moves: &mut [i16],
         choose: Choose<'_>,
     ) {
-        for (plain, level) in self.plain.iter_mut().zip(self.levels) {
+        for (plain, level) in self.plain.iter_mut().zip(levels) {
             *plain = mul_fixed((*level).into(), scale);
         }
+        core::mem::swap(&mut self.hinted, &mut self.before);
         let mut missed = 0;
-        for at in 0..self.order.len() {
-            let (track, neighbours) = self.order[at];
-            let Track { scores, misses, shared: Referred { moves: shared, is_same } } =
-                &mut self.tracks[track];
-            let plain = self.plain[track];
-            let shared = shared.as_ref().and_then(|moves| moves.get(size)).copied();
-            if *is_same {
-                let moved = shared.unwrap_or(0);
-                moves[track] = moved;
-                self.hinted[track] = plain.wrapping_add(moved.into());
-                continue;
+        for track in &mut self.tracks {
+            let number = track.number;
+            let plain = self.plain[number];
+            let shared = track.shared.moves.as_ref().and_then(|moves| moves.get(size)).copied();
+            if !track.shared.is_coded {
+                moves[number] = shared.unwrap_or(0);
+            } else {
+                let before = (!self.is_first).then_some(&*self.before);
+                let view = View { levels, plain: &self.plain, hinted: &self.hinted, before };
+                let at = At { axis: self.axis, size, missed, shared };
+                let (moved, is_first) = track.code(model, &view, at, &mut self.ranked, moves[number], choose);
+                moves[number] = moved;
+                missed += usize::from(!is_first);
             }
-            let before = (!self.before.is_empty()).then_some(&*self.before);
-            let view = View { levels: self.levels, plain: &self.plain, hinted: &self.hinted, before, shared };
-            let rules = view.rules(track, neighbours);
-            let ranked = scores.rank(&rules);
-            let state = State { misses: usize::from(*misses & 3), missed, kind: neighbours.kind() };
-            if C::WRITES {
-                moves[track] =
-                    asked(model, &ranked, state, choose, (self.axis, track, size), plain, moves[track]);
-            }
-            let wanted = plain.wrapping_add(moves[track].into());
-            let (position, is_first) = code_position(model, &ranked, state, wanted);
-            *misses = *misses << 1 | u8::from(!is_first);
-            missed += usize::from(!is_first);
-            // Damaged bytes may give any position.
-            moves[track] = position.wrapping_sub(plain) as i16;
-            self.hinted[track] = plain.wrapping_add(moves[track].into());
-            scores.update(&rules, self.hinted[track]);
+            self.hinted[number] = plain.wrapping_add(moves[number].into());
         }
-        self.before.clone_from(&self.hinted);
+        self.is_first = false;
+    }
+}
+
+/// The size at which a track's position is coded.
+#[derive(Clone, Copy)]
+struct At {
+    axis: usize,
+    /// The index of the size.
+    size: usize,
+    /// How many tracks were missed at this size.
+    missed: usize,
+    /// The move of the shared track that this one refers to.
+    shared: Option<i16>,
+}
+
+impl Track {
+    /// Codes the move at a size; also says whether the position is the first candidate's.
+    fn code<C: Coder>(
+        &mut self,
+        model: &mut ContextModel<'_, C>,
+        view: &View<'_>,
+        at: At,
+        ranked: &mut Ranked,
+        moved: i16,
+        choose: Choose<'_>,
+    ) -> (i16, bool) {
+        // The lowest and the highest track have few rules.
+        match (self.neighbours, at.shared) {
+            (Neighbours { lower: None, upper: None }, None) => {
+                self.code_by::<C, 1>(model, view, at, ranked, moved, choose)
+            }
+            (Neighbours { upper: None, .. }, None) => {
+                self.code_by::<C, 2>(model, view, at, ranked, moved, choose)
+            }
+            _ => self.code_by::<C, 4>(model, view, at, ranked, moved, choose),
+        }
+    }
+
+    /// The same with the rules of the first `N` groups of four.
+    fn code_by<C: Coder, const N: usize>(
+        &mut self,
+        model: &mut ContextModel<'_, C>,
+        view: &View<'_>,
+        at: At,
+        ranked: &mut Ranked,
+        moved: i16,
+        choose: Choose<'_>,
+    ) -> (i16, bool) {
+        let plain = view.plain[self.number];
+        let rules = view.rules::<N>(self.number, self.neighbours, at.shared);
+        self.scores.rank(&rules, ranked);
+        let mut candidates = Candidates { ranked, scores: &self.scores };
+        let kind = self.neighbours.kind();
+        let state = State { misses: usize::from(self.misses & 3), missed: at.missed, kind };
+        let moved = if C::WRITES {
+            asked(model, &mut candidates, state, choose, (at.axis, self.number, at.size), plain, moved)
+        } else {
+            moved
+        };
+        let wanted = plain.wrapping_add(moved.into());
+        let (position, is_first) = code_position(model, &mut candidates, state, wanted);
+        self.misses = self.misses << 1 | u8::from(!is_first);
+        // Damaged bytes may give any position.
+        let moved = position.wrapping_sub(plain) as i16;
+        self.scores.update(&rules, plain.wrapping_add(moved.into()));
+        (moved, is_first)
+    }
+}
+
+/// The candidates for a position.
+struct Candidates<'s> {
+    ranked: &'s mut Ranked,
+    scores: &'s Scores,
+}
+
+impl Candidates<'_> {
+    #[inline(always)]
+    fn get(&mut self, rank: usize) -> Option<Candidate> {
+        self.ranked.candidate(rank, self.scores)
     }
 }
 
@@ -140,27 +219,34 @@ struct State {
 
 fn asked<C: Coder>(
     model: &ContextModel<'_, C>,
-    ranked: &Ranked,
+    candidates: &mut Candidates<'_>,
     state: State,
     choose: Choose<'_>,
     (axis, track, size): (usize, usize, usize),
     plain: i32,
     wanted: i16,
 ) -> i16 {
-    let candidates: Vec<i32> = ranked.candidates().iter().map(|c| c.position.wrapping_sub(plain)).collect();
+    let total = candidates.ranked.total;
+    let candidates = candidates.ranked.all(candidates.scores);
+    let moves: Vec<i32> = candidates.iter().map(|c| c.position.wrapping_sub(plain)).collect();
     let price = |moved: i32, visit: &mut dyn FnMut(u32)| {
-        price(model, ranked, state, plain.wrapping_add(moved), visit);
+        price(model, candidates, total, state, plain.wrapping_add(moved), visit);
     };
-    let chosen = choose(&Question { axis, track, size, wanted, candidates: &candidates, price: &price });
+    let chosen = choose(&Question { axis, track, size, wanted, candidates: &moves, price: &price });
     chosen.clamp(i16::MIN.into(), i16::MAX.into()) as i16
 }
 
-/// The contexts of the bin that says whether a candidate is right.
-fn hit_contexts(ranked: &Ranked, rank: usize, left: u32, state: State) -> [usize; 3] {
-    let candidate = &ranked.candidates()[rank];
-    let share = (candidate.weight * 32 / left.max(1)) as i32;
+/// The contexts of the bin that says whether a candidate is right. `left` is the weight of all that are not tried before it.
+#[inline(always)]
+fn hit_contexts(candidate: &Candidate, rank: usize, left: u32, state: State) -> [usize; 3] {
+    // The share of the weight reaches 6, 10, 14 … 30 of 32 parts.
+    let (mut share, mut limit) = (0, 6 * left);
+    for _ in 0..7 {
+        share += usize::from(candidate.weight * 32 >= limit);
+        limit += 4 * left;
+    }
     [
-        rank * 8 + class(share, [6, 10, 14, 18, 22, 26, 30]),
+        rank * 8 + share,
         candidate.rule * 4 + class(i32::from(candidate.score >> 8), [100, 180, 235]),
         rank.min(3) * 12 + state.misses * 3 + state.missed.min(2),
     ]
@@ -181,20 +267,24 @@ fn split(position: i32, first: i32) -> (i32, i32) {
 }
 
 /// Codes a position; also says whether it is the first candidate's.
+#[inline(always)]
 fn code_position<C: Coder>(
     model: &mut ContextModel<'_, C>,
-    ranked: &Ranked,
+    candidates: &mut Candidates<'_>,
     state: State,
     position: i32,
 ) -> (i32, bool) {
-    let mut left = ranked.total;
-    for (rank, candidate) in ranked.candidates().iter().enumerate() {
-        if model.flag(HIT, hit_contexts(ranked, rank, left, state), candidate.position == position) {
+    let (mut left, mut rank, mut first) = (candidates.ranked.total, 0, 0);
+    while let Some(candidate) = candidates.get(rank) {
+        if model.flag(HIT, hit_contexts(&candidate, rank, left, state), candidate.position == position) {
             return (candidate.position, rank == 0);
         }
+        if rank == 0 {
+            first = candidate.position;
+        }
         left -= candidate.weight;
+        rank += 1;
     }
-    let first = ranked.candidates()[0].position;
     let (pixels, fraction) = split(position, first);
     let pixels = model.signed(MISS_PIXELS, miss_pixels_context(state), pixels);
     let fraction = model.signed(MISS_FRACTION, miss_fraction_context(first, pixels, state), fraction);
@@ -204,14 +294,15 @@ fn code_position<C: Coder>(
 /// Gives the probabilities of the bins of a position.
 fn price<C: Coder>(
     model: &ContextModel<'_, C>,
-    ranked: &Ranked,
+    candidates: &[Candidate],
+    total: u32,
     state: State,
     position: i32,
     visit: &mut dyn FnMut(u32),
 ) {
-    let mut left = ranked.total;
-    for (rank, candidate) in ranked.candidates().iter().enumerate() {
-        let probability = model.probability(HIT, hit_contexts(ranked, rank, left, state), 0);
+    let mut left = total;
+    for (rank, candidate) in candidates.iter().enumerate() {
+        let probability = model.probability(HIT, hit_contexts(candidate, rank, left, state), 0);
         if candidate.position == position {
             visit(probability);
             return;
@@ -219,7 +310,7 @@ fn price<C: Coder>(
         visit((1 << 12) - probability);
         left -= candidate.weight;
     }
-    let first = ranked.candidates()[0].position;
+    let first = candidates.first().map_or(0, |candidate| candidate.position);
     let (pixels, fraction) = split(position, first);
     model.visit_signed(MISS_PIXELS, miss_pixels_context(state), pixels, visit);
     model.visit_signed(MISS_FRACTION, miss_fraction_context(first, pixels, state), fraction, visit);
@@ -232,13 +323,25 @@ pub(super) fn code_shared<C: Coder>(
     scales: impl Iterator<Item = i32>,
     moves: &mut Vec<i16>,
 ) {
-    let levels = [level];
-    let mut axis = Axis::new(0, &levels, vec![Referred::default()]);
+    let mut track = Track {
+        number: 0,
+        neighbours: Neighbours::default(),
+        scores: Scores::new(0),
+        misses: 0,
+        shared: Referred::default(),
+    };
+    let (mut before, mut ranked) = ([0], Ranked::default());
     for (size, scale) in scales.enumerate() {
-        let mut moved = [moves.get(size).copied().unwrap_or(0)];
-        axis.code(model, size, scale, &mut moved, &mut |question| question.wanted.into());
+        let plain = [mul_fixed(level.into(), scale)];
+        let before_it = (size > 0).then_some(&before[..]);
+        let view = View { levels: &[level], plain: &plain, hinted: &[0], before: before_it };
+        let at = At { axis: 0, size, missed: 0, shared: None };
+        let wanted = moves.get(size).copied().unwrap_or(0);
+        let (moved, _) =
+            track.code(model, &view, at, &mut ranked, wanted, &mut |question| question.wanted.into());
+        before = [plain[0].wrapping_add(moved.into())];
         if !C::WRITES {
-            moves.push(moved[0]);
+            moves.push(moved);
         }
     }
 }

@@ -3,6 +3,8 @@
 
 use alloc::vec::Vec;
 
+use wide::i32x4;
+
 use crate::model::outline::interpolated;
 
 /// The number of rules.
@@ -10,7 +12,12 @@ pub(super) const RULES: usize = 14;
 /// The most candidates that are tried before a position is coded as a number.
 pub(super) const CANDIDATES: usize = 4;
 /// A score changes by this fraction of its distance from 0 or 1, as a shift.
-const SCORE_RATE: u32 = 3;
+const SCORE_RATE: i32 = 3;
+/// The score 1.
+const ALWAYS: i32 = 65535;
+/// Rules are compared four at a time; the last two lanes have none.
+const LANES: usize = 4 * GROUPS;
+const GROUPS: usize = 4;
 
 /// The tracks that are coded before one and lie beside it: the nearest below, or at the same level, and the nearest above.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -38,15 +45,18 @@ pub(super) fn coding_order(count: usize) -> Vec<(usize, Neighbours)> {
     if count > 1 {
         order.push((count - 1, Neighbours { lower: Some(0), upper: None }));
     }
-    let mut gaps = Vec::with_capacity(count);
-    gaps.push((0, count.saturating_sub(1)));
-    let mut next = 0;
-    while let Some(&(lower, upper)) = gaps.get(next) {
-        next += 1;
+    let split = |order: &mut Vec<_>, lower: usize, upper: usize| {
         if upper - lower > 1 {
-            let middle = (lower + upper) / 2;
-            order.push((middle, Neighbours { lower: Some(lower), upper: Some(upper) }));
-            gaps.extend([(lower, middle), (middle, upper)]);
+            order.push(((lower + upper) / 2, Neighbours { lower: Some(lower), upper: Some(upper) }));
+        }
+    };
+    split(&mut order, 0, count.saturating_sub(1));
+    let mut next = 2;
+    while let Some(&(middle, neighbours)) = order.get(next) {
+        next += 1;
+        if let Neighbours { lower: Some(lower), upper: Some(upper) } = neighbours {
+            split(&mut order, lower, middle);
+            split(&mut order, middle, upper);
         }
     }
     order
@@ -61,8 +71,6 @@ pub(super) struct View<'a> {
     pub(super) hinted: &'a [i32],
     /// None at the first size.
     pub(super) before: Option<&'a [i32]>,
-    /// The move of the shared track that this one refers to.
-    pub(super) shared: Option<i16>,
 }
 
 /// A position, rounded to whole pixels.
@@ -70,45 +78,135 @@ pub(super) fn to_grid(position: i32) -> i32 {
     position.wrapping_add(32) & !63
 }
 
+/// The positions that the rules give a track: of rules in the first `N` groups of four; no other has what it needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rules<const N: usize> {
+    positions: [i32; LANES],
+    /// The number of a row of [`VALID`].
+    valid: usize,
+}
+
+/// What a track has beside its plain position: bits of a row of [`VALID`].
+const LOWER: usize = 1;
+const UPPER: usize = 2;
+const BEFORE: usize = 4;
+const SHARED: usize = 8;
+
+/// The rules that have what they need.
+static VALID: [Valid; 16] = {
+    let mut rows = [Valid { bits: 0, lanes: [0; LANES] }; 16];
+    let mut row = 0;
+    while row < rows.len() {
+        let mut rule = 0;
+        while rule < RULES {
+            let needs = match rule {
+                0 | 1 => 0,
+                2 | 3 => BEFORE,
+                4..=6 => LOWER,
+                7 => LOWER | BEFORE,
+                8 | 9 => UPPER,
+                10 => UPPER | BEFORE,
+                11 | 12 => LOWER | UPPER,
+                _ => SHARED,
+            };
+            if row & needs == needs {
+                rows[row].bits |= 1 << rule;
+                rows[row].lanes[rule] = -1;
+            }
+            rule += 1;
+        }
+        row += 1;
+    }
+    rows
+};
+
+#[derive(Clone, Copy)]
+struct Valid {
+    /// A bit for each rule.
+    bits: u32,
+    /// The same as masks.
+    lanes: [i32; LANES],
+}
+
 impl View<'_> {
-    /// The position that each rule gives a track; `None` for a rule that lacks what it needs.
-    pub(super) fn rules(&self, track: usize, neighbours: Neighbours) -> [Option<i32>; RULES] {
+    /// The position that each rule gives a track; `shared` is the move of the shared track that it refers to.
+    #[inline(always)]
+    pub(super) fn rules<const N: usize>(
+        &self,
+        track: usize,
+        neighbours: Neighbours,
+        shared: Option<i16>,
+    ) -> Rules<N> {
         let plain = self.plain[track];
-        let mut rules = [None; RULES];
-        rules[0] = Some(to_grid(plain));
-        rules[1] = Some(plain);
-        let before = |k: usize| self.before.map(|before| before[k]);
-        if let Some(before) = before(track) {
-            rules[2] = Some(before);
-            rules[3] = Some(before.wrapping_add(64));
+        let mut at = [0; LANES];
+        let mut valid = 0;
+        (at[0], at[1]) = (to_grid(plain), plain);
+        let before = |track: usize| self.before.map_or(0, |before| before[track]);
+        let own = before(track);
+        if self.before.is_some() {
+            valid |= BEFORE;
+            (at[2], at[3]) = (own, own.wrapping_add(64));
         }
-        if let Some(a) = neighbours.lower {
+        if let (2.., Some(a)) = (N, neighbours.lower) {
+            valid |= LOWER;
             let (hinted, apart) = (self.hinted[a], plain.wrapping_sub(self.plain[a]));
-            rules[4] = Some(hinted.wrapping_add(to_grid(apart)));
-            rules[5] = Some(hinted.wrapping_add(apart));
-            rules[6] = Some(hinted.wrapping_add(64));
-            rules[7] = before(track).zip(before(a)).map(|(own, a)| hinted.wrapping_add(own.wrapping_sub(a)));
+            at[4] = hinted.wrapping_add(to_grid(apart));
+            at[5] = hinted.wrapping_add(apart);
+            at[6] = hinted.wrapping_add(64);
+            at[7] = hinted.wrapping_add(own.wrapping_sub(before(a)));
         }
-        if let Some(b) = neighbours.upper {
+        if let (3.., Some(b)) = (N, neighbours.upper) {
+            valid |= UPPER;
             let (hinted, apart) = (self.hinted[b], self.plain[b].wrapping_sub(plain));
-            rules[8] = Some(hinted.wrapping_sub(to_grid(apart)));
-            rules[9] = Some(hinted.wrapping_sub(apart));
-            rules[10] = before(track).zip(before(b)).map(|(own, b)| hinted.wrapping_sub(b.wrapping_sub(own)));
+            at[8] = hinted.wrapping_sub(to_grid(apart));
+            at[9] = hinted.wrapping_sub(apart);
+            at[10] = hinted.wrapping_sub(before(b).wrapping_sub(own));
         }
-        if let (Some(a), Some(b)) = (neighbours.lower, neighbours.upper) {
+        if let (3.., Some(a), Some(b)) = (N, neighbours.lower, neighbours.upper) {
             let ends = [a, b].map(|k| (i32::from(self.levels[k]), self.plain[k], self.hinted[k]));
             let middle = interpolated(ends, self.levels[track].into(), plain);
-            rules[11] = Some(middle);
-            rules[12] = Some(to_grid(middle));
+            (at[11], at[12]) = (middle, to_grid(middle));
         }
-        rules[13] = self.shared.map(|moved| plain.wrapping_add(moved.into()));
-        rules
+        if let (4.., Some(moved)) = (N, shared) {
+            valid |= SHARED;
+            at[13] = plain.wrapping_add(moved.into());
+        }
+        Rules { positions: at, valid }
     }
+}
+
+impl<const N: usize> Rules<N> {
+    /// The positions that rules give, four at a time.
+    #[inline(always)]
+    fn lanes(&self) -> [i32x4; N] {
+        lanes(&self.positions)
+    }
+
+    /// For each rule that has what it needs, all bits.
+    #[inline(always)]
+    fn valid(&self) -> [i32x4; N] {
+        lanes(&VALID[self.valid % VALID.len()].lanes)
+    }
+}
+
+#[inline(always)]
+fn lanes<const N: usize>(from: &[i32; LANES]) -> [i32x4; N] {
+    core::array::from_fn(|group| {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|lane| from[(4 * group + lane) % LANES]);
+        i32x4::new([a, b, c, d])
+    })
+}
+
+/// For each lane with this number, all bits.
+#[inline(always)]
+fn equal<const N: usize>(lanes: [i32x4; N], number: i32) -> [i32x4; N] {
+    let number = i32x4::splat(number);
+    lanes.map(|lanes| lanes.simd_eq(number))
 }
 
 /// How often each rule was right, in 1/65536.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scores([u16; RULES]);
+pub(super) struct Scores([i32x4; GROUPS]);
 
 /// The initial scores by the kind of neighbours, in 1/256. The third row, an upper neighbour alone, does not occur in this order.
 const INITIAL: [[u8; RULES]; 4] = [
@@ -120,62 +218,81 @@ const INITIAL: [[u8; RULES]; 4] = [
 
 impl Scores {
     pub(super) fn new(kind: usize) -> Self {
-        Self(INITIAL[kind].map(|score| u16::from(score) << 8))
+        let mut scores = [0; LANES];
+        for (score, initial) in scores.iter_mut().zip(INITIAL[kind]) {
+            *score = i32::from(initial) << 8;
+        }
+        Self(lanes(&scores))
     }
 
-    /// The candidates: the positions with the highest sums of scores, highest first.
-    pub(super) fn rank(&self, rules: &[Option<i32>; RULES]) -> Ranked {
-        let mut found: [Candidate; RULES] = [Candidate::default(); RULES];
-        let mut count = 0;
-        for (rule, (position, score)) in rules.iter().zip(self.0).enumerate() {
-            let Some(position) = *position else { continue };
-            let weight = u32::from(score) + 1;
-            match found[..count].iter_mut().find(|candidate| candidate.position == position) {
-                Some(candidate) => {
-                    candidate.weight += weight;
-                    if score > candidate.score {
-                        (candidate.rule, candidate.score) = (rule, score);
-                    }
-                }
-                None => {
-                    found[count] = Candidate { position, weight, rule, score };
-                    count += 1;
-                }
+    /// Groups the rules by their positions.
+    #[inline(always)]
+    pub(super) fn rank<const N: usize>(&self, rules: &Rules<N>, ranked: &mut Ranked) {
+        let (positions, valid): ([_; N], [_; N]) = (rules.lanes(), rules.valid());
+        let weights: [i32x4; N] =
+            core::array::from_fn(|group| (self.0[group % GROUPS] + i32x4::splat(1)) & valid[group]);
+        let mut left = VALID[rules.valid % VALID.len()].bits;
+        (ranked.count, ranked.selected, ranked.total) = (0, 0, 0);
+        for place in &mut ranked.places {
+            if left == 0 {
+                break;
             }
-        }
-        let total = found[..count].iter().map(|candidate| candidate.weight).sum();
-        let tried = count.min(CANDIDATES);
-        for k in 0..tried {
-            let mut best = k;
-            for other in k + 1..count {
-                if found[other].weight > found[best].weight {
-                    best = other;
-                }
+            let position = rules.positions[left.trailing_zeros() as usize % LANES];
+            let equal = equal(positions, position);
+            let (mut rules, mut weight) = (0, i32x4::splat(0));
+            for (group, equal) in equal.into_iter().enumerate() {
+                rules |= equal.to_bitmask() << (4 * group);
+                weight += equal & weights[group];
             }
-            found[k..=best].rotate_right(1);
+            *place = Place { position, weight: weight.reduce_add() as u32, rules: rules & left };
+            left &= !rules;
+            ranked.total += place.weight;
+            ranked.count += 1;
         }
-        let mut candidates = [Candidate::default(); CANDIDATES];
-        candidates[..tried].copy_from_slice(&found[..tried]);
-        Ranked { candidates, count: tried, total }
     }
 
     /// Learns which rules were right.
-    pub(super) fn update(&mut self, rules: &[Option<i32>; RULES], position: i32) {
-        for (score, rule) in self.0.iter_mut().zip(rules) {
-            match rule {
-                Some(rule) if *rule == position => *score += (u16::MAX - *score) >> SCORE_RATE,
-                Some(_) => *score -= *score >> SCORE_RATE,
-                None => {}
-            }
+    #[inline(always)]
+    pub(super) fn update<const N: usize>(&mut self, rules: &Rules<N>, position: i32) {
+        let (equal, valid) = (equal(rules.lanes(), position), rules.valid());
+        for (group, (equal, valid)) in equal.into_iter().zip(valid).enumerate() {
+            let scores = &mut self.0[group % GROUPS];
+            let more = (i32x4::splat(ALWAYS) - *scores) >> SCORE_RATE;
+            let less = i32x4::splat(0) - (*scores >> SCORE_RATE);
+            *scores += valid & (equal & more | !equal & less);
         }
+    }
+
+    /// The rule with the highest score among some, and that score. `rules` has a bit for each.
+    #[inline(always)]
+    fn best(&self, rules: u32) -> (usize, u16) {
+        let scores = self.0.map(i32x4::to_array);
+        let (mut best, mut score, mut left) = (0, -1, rules);
+        while left != 0 {
+            let rule = left.trailing_zeros() as usize % LANES;
+            left &= left - 1;
+            let own = scores[rule / 4][rule % 4];
+            (best, score) = if own > score { (rule, own) } else { (best, score) };
+        }
+        (best, score as u16)
     }
 }
 
 /// A position that some rules give.
 #[derive(Debug, Clone, Copy, Default)]
+struct Place {
+    position: i32,
+    /// The sum of their scores, and of 1 for each; 0 once the position is a candidate.
+    weight: u32,
+    /// A bit for each of them.
+    rules: u32,
+}
+
+/// A position that is tried.
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Candidate {
     pub(super) position: i32,
-    /// The sum of those rules' scores.
+    /// The sum of the scores of the rules that give it.
     pub(super) weight: u32,
     /// The one with the highest score.
     pub(super) rule: usize,
@@ -183,17 +300,52 @@ pub(super) struct Candidate {
     pub(super) score: u16,
 }
 
-/// The candidates that are tried in turn.
-#[derive(Debug, Clone, Copy)]
+/// The candidates that are tried in turn: the positions with the highest sums of scores, highest first. Most often the first
+/// one is right, so each is looked for when it is asked for.
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Ranked {
-    candidates: [Candidate; CANDIDATES],
+    places: [Place; RULES],
     count: usize,
-    /// The sum of all candidates' weights, those that are not tried included.
+    candidates: [Candidate; CANDIDATES],
+    /// How many candidates are found.
+    selected: usize,
+    /// The sum of all weights, those of positions that are not tried included.
     pub(super) total: u32,
 }
 
 impl Ranked {
-    pub(super) fn candidates(&self) -> &[Candidate] {
-        &self.candidates[..self.count]
+    /// Finds the next candidate, if there is one.
+    #[inline(always)]
+    fn select(&mut self, scores: &Scores) -> Option<Candidate> {
+        let slot = self.candidates.get_mut(self.selected)?;
+        let places = self.places.get_mut(..self.count)?;
+        let (mut best, mut weight) = (0, 0);
+        for (at, place) in places.iter().enumerate() {
+            (best, weight) = if place.weight > weight { (at, place.weight) } else { (best, weight) };
+        }
+        if weight == 0 {
+            return None;
+        }
+        let place = places.get_mut(best)?;
+        place.weight = 0;
+        let (rule, score) = scores.best(place.rules);
+        *slot = Candidate { position: place.position, weight, rule, score };
+        self.selected += 1;
+        Some(*slot)
+    }
+
+    /// A candidate, if there are as many.
+    #[inline(always)]
+    pub(super) fn candidate(&mut self, rank: usize, scores: &Scores) -> Option<Candidate> {
+        if rank < self.selected { self.candidates.get(rank).copied() } else { self.select(scores) }
+    }
+
+    /// All candidates.
+    pub(super) fn all(&mut self, scores: &Scores) -> &[Candidate] {
+        while self.select(scores).is_some() {}
+        &self.candidates[..self.selected]
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -17,6 +17,8 @@ pub enum Source {
     Same(u16),
     /// They are coded with the glyph, and a shared track of about the same level predicts them.
     Near(u16),
+    /// They are 0 at all sizes: other points are interpolated between the track's.
+    Still,
 }
 
 /// The shared tracks of a font, along x and y.

@@ -1,6 +1,7 @@
 //! Coding of an axis's tracks: which levels of the outline have one, which points belong to it, and where its moves come from.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::shared::{Shared, Source};
 use crate::error::Damage;
@@ -16,8 +17,8 @@ const SPLIT: usize = 5;
 /// The points of one level.
 struct Level {
     units: i16,
-    /// Their numbers.
-    points: Vec<u16>,
+    /// Where they are in the list of all points by level.
+    points: Range<usize>,
     /// 2 for the lowest and the highest of the glyph, 1 for those of a contour, else 0.
     extreme: usize,
     on_curve: usize,
@@ -25,20 +26,20 @@ struct Level {
     is_flat: bool,
 }
 
-/// The levels of an outline along an axis, ascending.
-fn levels(points: &OutlinePoints, axis: usize) -> Vec<Level> {
+/// The numbers of an outline's points by their coordinates along an axis, and its levels, ascending.
+fn levels(points: &OutlinePoints, axis: usize) -> (Vec<u16>, Vec<Level>) {
     let coordinates = &points.coordinates[axis];
     let mut order: Vec<u16> = (0..points.len() as u16).collect();
-    order.sort_by_key(|point| (coordinates[usize::from(*point)], *point));
-    let mut levels: Vec<Level> = Vec::new();
-    for point in order {
-        let units = coordinates[usize::from(point)];
+    order.sort_unstable_by_key(|point| (coordinates[usize::from(*point)], *point));
+    let mut levels: Vec<Level> = Vec::with_capacity(points.len());
+    for (at, point) in order.iter().map(|point| usize::from(*point)).enumerate() {
+        let units = coordinates[point];
         if levels.last().is_none_or(|level| level.units != units) {
-            levels.push(Level { units, points: Vec::new(), extreme: 0, on_curve: 0, is_flat: false });
+            levels.push(Level { units, points: at..at, extreme: 0, on_curve: 0, is_flat: false });
         }
         if let Some(level) = levels.last_mut() {
-            level.points.push(point);
-            level.on_curve += usize::from(points.on_curve[usize::from(point)]);
+            level.points.end = at + 1;
+            level.on_curve += usize::from(points.on_curve[point]);
         }
     }
     let mut find = |units: i16, change: &dyn Fn(&mut Level)| {
@@ -63,7 +64,7 @@ fn levels(points: &OutlinePoints, axis: usize) -> Vec<Level> {
             level.extreme = 2;
         }
     }
-    levels
+    (order, levels)
 }
 
 /// Codes the tracks of an axis and their sources.
@@ -78,8 +79,10 @@ pub(super) fn code<C: Coder>(
 ) -> Result<(), Damage> {
     hints.track_of.resize(points.len(), UNTOUCHED);
     let mut tracks = Tracks { last: i32::from(i16::MIN), before: [false; 2], levels: Vec::new() };
-    for (at, level) in levels(points, axis).iter().enumerate() {
-        tracks.code(model, at, level, units_per_em, hints)?;
+    let (order, levels) = levels(points, axis);
+    for (at, level) in levels.iter().enumerate() {
+        let points = order.get(level.points.clone()).unwrap_or_default();
+        tracks.code(model, (at, level), points, units_per_em, hints)?;
         model.check()?;
     }
     if !C::WRITES {
@@ -105,8 +108,8 @@ impl Tracks {
     fn code<C: Coder>(
         &mut self,
         model: &mut ContextModel<'_, C>,
-        at: usize,
-        level: &Level,
+        (at, level): (usize, &Level),
+        points: &[u16],
         units_per_em: u16,
         hints: &mut AxisHints,
     ) -> Result<(), Damage> {
@@ -115,23 +118,23 @@ impl Tracks {
         let units = i32::from(level.units);
         let is_near = class(thousandths(units - self.last), [10, 25, 60, 120, 250]);
         let contexts = [
-            level.extreme * 8 + (level.points.len().min(4) - 1) * 2 + usize::from(level.is_flat),
+            level.extreme * 8 + (points.len().min(4) - 1) * 2 + usize::from(level.is_flat),
             is_near * 3 + level.on_curve.min(2),
             usize::from(self.before[0]) * 12 + usize::from(self.before[1]) * 6 + at.min(5),
         ];
         let own = |point: &u16| hints.track_of[usize::from(*point)];
-        let count = if C::WRITES { subtracks(level.points.iter().map(own), first) } else { 0 };
+        let count = if C::WRITES { subtracks(points.iter().map(own), first) } else { 0 };
         let has_track = model.flag(TRACK, contexts, count > 0);
         self.before = [has_track, self.before[0]];
         if !has_track {
             return Ok(());
         }
         self.last = units;
-        let is_whole = count == 1 && level.points.iter().all(|point| usize::from(own(point)) == first);
+        let is_whole = count == 1 && points.iter().all(|point| usize::from(own(point)) == first);
         let mut count = 1;
         if model.flag(UNUSUAL, [SPLIT, 0, 0], !is_whole) {
             count = 0;
-            for (k, point) in level.points.iter().enumerate() {
+            for (k, point) in points.iter().enumerate() {
                 let track = &mut hints.track_of[usize::from(*point)];
                 let sub = if *track == UNTOUCHED { 0 } else { usize::from(*track).wrapping_sub(first) + 1 };
                 let sub = model.positive(SUBTRACK, [k.min(1), 0, 0], sub as u32 + 1) as usize - 1;
@@ -142,10 +145,7 @@ impl Tracks {
                 *track = if sub == 0 { UNTOUCHED } else { (first + sub - 1).min(MAX_TRACKS) as u8 };
             }
         } else {
-            level
-                .points
-                .iter()
-                .for_each(|point| hints.track_of[usize::from(*point)] = first.min(MAX_TRACKS) as u8);
+            points.iter().for_each(|point| hints.track_of[usize::from(*point)] = first.min(MAX_TRACKS) as u8);
         }
         self.levels.resize(first + count, level.units);
         if self.levels.len() > MAX_TRACKS {
@@ -173,6 +173,7 @@ fn code_source<C: Coder>(
         Source::Own => 0,
         Source::Same(_) => 1,
         Source::Near(_) => 2,
+        Source::Still => 3,
     };
     let kind = model.bits(SOURCE, axis * 3 + same.len().min(2), 2, kind);
     let number = |model: &mut ContextModel<'_, C>, context: usize, number: usize| {
@@ -198,6 +199,6 @@ fn code_source<C: Coder>(
             let at = shared.of_rank(axis, level, rank).ok_or(malformed("refers to no shared track"))?;
             Ok(Source::Near(at as u16))
         }
-        _ => Err(malformed("has a track of an unknown kind")),
+        _ => Ok(Source::Still),
     }
 }

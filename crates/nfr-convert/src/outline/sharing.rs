@@ -55,7 +55,7 @@ impl SharedTracks {
     pub(super) fn find(outlines: &[FittedOutline], axis: usize, fidelity: Fidelity) -> Self {
         let all: Vec<Track<'_>> = outlines.iter().flat_map(|outline| tracks(outline, axis)).collect();
         let mut same: HashMap<(i16, &[i16]), usize> = HashMap::new();
-        for track in &all {
+        for track in all.iter().filter(|track| track.moves.iter().any(|moved| *moved != 0)) {
             *same.entry((track.level, &track.moves)).or_default() += 1;
         }
         let mut candidates: Vec<((i16, &[i16]), usize)> = same.into_iter().collect();
@@ -84,7 +84,7 @@ impl SharedTracks {
         Self(kept.into_iter().map(|(_, track)| track).collect())
     }
 
-    /// The shared track that takes a track's place, or predicts it.
+    /// Where a track's moves come from: nowhere if it stays, or the shared track that takes its place, or predicts it.
     pub(super) fn source(&self, track: &Track<'_>, units_per_em: u16, fidelity: Fidelity) -> Source {
         let first = self.0.partition_point(|shared| shared.level < track.level);
         let end = self.0.partition_point(|shared| shared.level <= track.level);
@@ -92,7 +92,14 @@ impl SharedTracks {
         let errors =
             (first..end).map(|at| (at, error(track, &self.0[at].moves), self.0[at].moves == track.moves));
         let near = errors.filter(|(_, error, same)| *same || *error <= limit && !fidelity.is_exact());
-        if let Some((at, ..)) = near.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        let near = near.min_by(|a, b| a.1.total_cmp(&b.1));
+        let still = error(track, &vec![0; track.moves.len()]);
+        let is_still = track.moves.iter().all(|moved| *moved == 0)
+            || still <= limit && !fidelity.is_exact() && near.is_none_or(|(_, error, _)| still <= error);
+        if is_still {
+            return Source::Still;
+        }
+        if let Some((at, ..)) = near {
             return Source::Same(at as u16);
         }
         let reach = REACH * i32::from(units_per_em) / 1000;

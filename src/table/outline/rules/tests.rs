@@ -1,0 +1,83 @@
+use proptest::prelude::*;
+
+use super::*;
+
+/// The order of the first six tracks of nine: the ends, then the middles of gaps, those of larger gaps first.
+#[test]
+fn tracks_are_coded_from_the_ends_to_the_middles_of_gaps() {
+    let order: Vec<usize> = coding_order(9).iter().map(|(track, _)| *track).collect();
+    assert_eq!(order, [0, 8, 4, 2, 6, 1, 3, 5, 7]);
+    for count in 0..40 {
+        let mut coded = vec![false; count];
+        for (track, Neighbours { lower, upper }) in coding_order(count) {
+            // The nearest tracks that are coded already, as section 7.5 of the specification names them.
+            assert_eq!(lower, (0..track).rev().find(|at| coded[*at]), "{track} of {count}");
+            assert_eq!(upper, (track + 1..count).find(|at| coded[*at]), "{track} of {count}");
+            coded[track] = true;
+        }
+        assert!(coded.iter().all(|is| *is));
+    }
+}
+
+/// What `Scores::rank` finds, from the words of the specification: position, weight, rule and score.
+fn naive(positions: [i32; LANES], scores: [i32; LANES], valid: usize) -> (Vec<(i32, u32, usize, u16)>, u32) {
+    let mut found: Vec<(i32, u32, usize, u16)> = Vec::new();
+    for rule in (0..RULES).filter(|rule| VALID[valid].lanes[*rule] != 0) {
+        let (weight, score) = (scores[rule] as u32 + 1, scores[rule] as u16);
+        match found.iter_mut().find(|candidate| candidate.0 == positions[rule]) {
+            Some(candidate) => {
+                candidate.1 += weight;
+                if score > candidate.3 {
+                    (candidate.2, candidate.3) = (rule, score);
+                }
+            }
+            None => found.push((positions[rule], weight, rule, score)),
+        }
+    }
+    let total = found.iter().map(|candidate| candidate.1).sum();
+    found.sort_by_key(|candidate| std::cmp::Reverse(candidate.1));
+    found.truncate(CANDIDATES);
+    (found, total)
+}
+
+fn check<const N: usize>(positions: [i32; LANES], scores: [i32; LANES], valid: usize, hinted: i32) {
+    let rules = Rules::<N> { positions, valid };
+    let mut known = Scores(lanes(&scores));
+    let mut ranked = Ranked::default();
+    known.rank(&rules, &mut ranked);
+    let (expected, total) = naive(positions, scores, valid);
+    assert_eq!(ranked.total, total);
+    for (rank, expected) in expected.iter().enumerate() {
+        let Candidate { position, weight, rule, score } =
+            ranked.candidate(rank, &known).expect("a candidate");
+        assert_eq!((position, weight, rule, score), *expected, "number {rank}");
+    }
+    assert!(ranked.candidate(expected.len(), &known).is_none());
+    known.update(&rules, hinted);
+    let learnt = known.0.map(i32x4::to_array);
+    for rule in 0..RULES {
+        let (score, is_valid) = (scores[rule], VALID[valid].lanes[rule] != 0);
+        let expected = match positions[rule] == hinted {
+            _ if !is_valid => score,
+            true => score + ((65535 - score) >> 3),
+            false => score - (score >> 3),
+        };
+        assert_eq!(learnt[rule / 4][rule % 4], expected, "rule {rule}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn candidates_and_scores_are_those_of_a_plain_loop(
+        positions in prop::array::uniform16(prop_oneof![-2..3i32, any::<i32>()]),
+        scores in prop::array::uniform16(0..=65535i32),
+        valid in 0..16usize,
+        hinted in -2..3i32,
+    ) {
+        check::<4>(positions, scores, valid, hinted);
+        check::<2>(positions, scores, valid & (LOWER | BEFORE), hinted);
+        check::<1>(positions, scores, valid & BEFORE, hinted);
+    }
+}
