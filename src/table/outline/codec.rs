@@ -332,3 +332,6 @@ pub fn code_list<C: Coder>(model: &mut ContextModel<'_, C>, list: &mut [i8]) {
 pub fn scale_at(scale: Scale, size: usize) -> i32 {
     scale_of(scale.ppem_of(size) as f32, scale.units_per_em())
 }
+
+#[cfg(test)]
+mod tests;

@@ -151,14 +151,10 @@ impl Track {
         choose: Choose<'_>,
     ) -> (i16, bool) {
         // The lowest and the highest track have few rules.
-        match (self.neighbours, at.shared) {
-            (Neighbours { lower: None, upper: None }, None) => {
-                self.code_by::<C, 1>(model, view, at, ranked, moved, choose)
-            }
-            (Neighbours { upper: None, .. }, None) => {
-                self.code_by::<C, 2>(model, view, at, ranked, moved, choose)
-            }
-            _ => self.code_by::<C, 4>(model, view, at, ranked, moved, choose),
+        match self.neighbours.kind() {
+            0 => self.code_by::<C, 1>(model, view, at, ranked, moved, choose),
+            1 => self.code_by::<C, 2>(model, view, at, ranked, moved, choose),
+            _ => self.code_by::<C, 3>(model, view, at, ranked, moved, choose),
         }
     }
 
@@ -248,7 +244,7 @@ fn hit_contexts(candidate: &Candidate, rank: usize, left: u32, state: State) -> 
     [
         rank * 8 + share,
         candidate.rule * 4 + class(i32::from(candidate.score >> 8), [100, 180, 235]),
-        rank.min(3) * 12 + state.misses * 3 + state.missed.min(2),
+        rank * 12 + state.misses * 3 + state.missed.min(2),
     ]
 }
 

@@ -8,16 +8,16 @@ use wide::i32x4;
 use crate::model::outline::interpolated;
 
 /// The number of rules.
-pub(super) const RULES: usize = 14;
+pub(super) const RULES: usize = 11;
 /// The most candidates that are tried before a position is coded as a number.
-pub(super) const CANDIDATES: usize = 4;
+pub(super) const CANDIDATES: usize = 2;
 /// A score changes by this fraction of its distance from 0 or 1, as a shift.
 const SCORE_RATE: i32 = 3;
 /// The score 1.
 const ALWAYS: i32 = 65535;
-/// Rules are compared four at a time; the last two lanes have none.
+/// Rules are compared four at a time; the last lane has none.
 const LANES: usize = 4 * GROUPS;
-const GROUPS: usize = 4;
+const GROUPS: usize = 3;
 
 /// The tracks that are coded before one and lie beside it: the nearest below, or at the same level, and the nearest above.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -29,9 +29,9 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// 0 without any, 1 with a lower one, 2 with an upper one, 3 with both.
+    /// 0 without any, 1 with a lower one, 2 with both. In the coding order no track has an upper one alone.
     pub(super) fn kind(self) -> usize {
-        usize::from(self.lower.is_some()) + 2 * usize::from(self.upper.is_some())
+        usize::from(self.lower.is_some()) + usize::from(self.upper.is_some())
     }
 }
 
@@ -101,13 +101,13 @@ static VALID: [Valid; 16] = {
         while rule < RULES {
             let needs = match rule {
                 0 | 1 => 0,
-                2 | 3 => BEFORE,
-                4..=6 => LOWER,
-                7 => LOWER | BEFORE,
+                2 => BEFORE,
+                3 => SHARED,
+                4 | 5 => LOWER,
+                6 => LOWER | BEFORE,
+                7 => LOWER | UPPER,
                 8 | 9 => UPPER,
-                10 => UPPER | BEFORE,
-                11 | 12 => LOWER | UPPER,
-                _ => SHARED,
+                _ => UPPER | BEFORE,
             };
             if row & needs == needs {
                 rows[row].bits |= 1 << rule;
@@ -143,17 +143,20 @@ impl View<'_> {
         (at[0], at[1]) = (to_grid(plain), plain);
         let before = |track: usize| self.before.map_or(0, |before| before[track]);
         let own = before(track);
+        at[2] = own;
         if self.before.is_some() {
             valid |= BEFORE;
-            (at[2], at[3]) = (own, own.wrapping_add(64));
+        }
+        if let Some(moved) = shared {
+            valid |= SHARED;
+            at[3] = plain.wrapping_add(moved.into());
         }
         if let (2.., Some(a)) = (N, neighbours.lower) {
             valid |= LOWER;
             let (hinted, apart) = (self.hinted[a], plain.wrapping_sub(self.plain[a]));
             at[4] = hinted.wrapping_add(to_grid(apart));
             at[5] = hinted.wrapping_add(apart);
-            at[6] = hinted.wrapping_add(64);
-            at[7] = hinted.wrapping_add(own.wrapping_sub(before(a)));
+            at[6] = hinted.wrapping_add(own.wrapping_sub(before(a)));
         }
         if let (3.., Some(b)) = (N, neighbours.upper) {
             valid |= UPPER;
@@ -164,12 +167,7 @@ impl View<'_> {
         }
         if let (3.., Some(a), Some(b)) = (N, neighbours.lower, neighbours.upper) {
             let ends = [a, b].map(|k| (i32::from(self.levels[k]), self.plain[k], self.hinted[k]));
-            let middle = interpolated(ends, self.levels[track].into(), plain);
-            (at[11], at[12]) = (middle, to_grid(middle));
-        }
-        if let (4.., Some(moved)) = (N, shared) {
-            valid |= SHARED;
-            at[13] = plain.wrapping_add(moved.into());
+            at[7] = interpolated(ends, self.levels[track].into(), plain);
         }
         Rules { positions: at, valid }
     }
@@ -208,12 +206,11 @@ fn equal<const N: usize>(lanes: [i32x4; N], number: i32) -> [i32x4; N] {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scores([i32x4; GROUPS]);
 
-/// The initial scores by the kind of neighbours, in 1/256. The third row, an upper neighbour alone, does not occur in this order.
-const INITIAL: [[u8; RULES]; 4] = [
-    [150, 40, 120, 40, 0, 0, 0, 0, 0, 0, 0, 0, 0, 200],
-    [120, 30, 80, 40, 130, 40, 20, 120, 0, 0, 0, 0, 0, 200],
-    [120, 30, 80, 40, 0, 0, 0, 0, 130, 40, 120, 0, 0, 200],
-    [80, 20, 60, 30, 90, 40, 30, 90, 90, 40, 90, 90, 60, 200],
+/// The initial scores by the kind of neighbours, in 1/256.
+const INITIAL: [[u8; RULES]; 3] = [
+    [150, 40, 120, 200, 0, 0, 0, 0, 0, 0, 0],
+    [120, 30, 80, 200, 130, 40, 120, 0, 0, 0, 0],
+    [80, 20, 60, 200, 90, 40, 90, 90, 90, 40, 90],
 ];
 
 impl Scores {
