@@ -28,6 +28,7 @@ pub mod refine;
 pub mod strip;
 pub mod teacher;
 pub mod temporary;
+#[cfg(feature = "train")]
 pub mod train;
 pub mod training_samples;
 pub mod writer;

@@ -22,6 +22,29 @@ fn help_and_version_succeed() {
     }
 }
 
+#[cfg(not(feature = "lab"))]
+#[test]
+fn a_command_that_is_not_built_in_says_how_to_build_it() {
+    for args in [&["lab"][..], &["lab", "--help"], &["lab", "report", "--jobs", "2"]] {
+        nfr(args).rejects_usage(&["without `nfr lab`", "cargo build --release --bins --features lab"]);
+    }
+    assert!(nfr(&["--help"]).stdout.contains("lab     Not in this build"));
+}
+
+#[cfg(not(feature = "train"))]
+#[test]
+fn without_training_fields_are_refused_and_nothing_is_written() {
+    let directory = Directory::new();
+    let parts = ["glyph 36 needs a trained field", "cargo build --release --bins --features train"];
+    let field = convert(&directory, SANS, &["--shape", "field"]);
+    field.fails_with(&[&parts[..], &["--shape outline"]].concat());
+    let dropped = convert(&directory, SANS, &["--drop-outlines"]);
+    dropped.fails_with(&[&parts[..], &["keep the outlines"]].concat());
+    // With a work file to go on with, too.
+    convert(&directory, SANS, &["--shape", "field", "--resume"]).fails_with(&parts);
+    assert!(directory.files().is_empty());
+}
+
 #[test]
 fn what_is_no_font_is_refused() {
     let directory = Directory::new();

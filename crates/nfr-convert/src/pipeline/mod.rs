@@ -3,6 +3,7 @@
 mod fields;
 mod glyphs;
 mod outlines;
+mod training;
 
 use std::collections::{BTreeMap, BTreeSet};
 
