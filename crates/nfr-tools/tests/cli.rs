@@ -22,13 +22,17 @@ fn help_and_version_succeed() {
     }
 }
 
-#[cfg(not(feature = "lab"))]
 #[test]
 fn a_command_that_is_not_built_in_says_how_to_build_it() {
-    for args in [&["lab"][..], &["lab", "--help"], &["lab", "report", "--jobs", "2"]] {
-        nfr(args).rejects_usage(&["without `nfr lab`", "cargo build --release --bins --features lab"]);
+    for (command, built) in [("bench", cfg!(feature = "bench")), ("lab", cfg!(feature = "lab"))] {
+        let usage = nfr(&["--help"]).succeeds().stdout;
+        let line = usage.lines().find(|line| line.trim_start().starts_with(command)).unwrap();
+        assert_eq!(line.contains("Not in this build"), !built, "{line}");
+        let advice = format!("`cargo build --release --bins --features {command}`");
+        for more in [&[][..], &["--help"], &["report", "--jobs", "2"]].into_iter().filter(|_| !built) {
+            nfr(&[&[command], more].concat()).rejects_usage(&[&format!("without `nfr {command}`"), &advice]);
+        }
     }
-    assert!(nfr(&["--help"]).stdout.contains("lab     Not in this build"));
 }
 
 #[cfg(not(feature = "train"))]
