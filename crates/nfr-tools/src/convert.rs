@@ -68,7 +68,7 @@ pub struct Args {
     index: u32,
     /// Leave out the outlines of the glyphs that get models, for programs that draw only with those
     ///
-    /// Metrics, characters and layout stay. Everything else draws these glyphs as blanks.
+    /// Metrics, characters and layout stay. Everything else draws these glyphs as blanks. Their models are fields.
     #[arg(long)]
     drop_outlines: bool,
     /// Go on where an interrupted conversion to the same output stopped
