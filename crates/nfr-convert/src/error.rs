@@ -18,6 +18,13 @@ pub enum Error {
     NoSuchGlyph(u32),
     /// The font has no model for this glyph.
     MissingGlyph(u16),
+    /// A glyph needs a field, which is trained, and this build lacks the feature `train`.
+    TrainingNotBuilt {
+        /// The glyph.
+        gid: u16,
+        /// Whether it needs a field because outlines are dropped; otherwise fields are asked for.
+        outlines_dropped: bool,
+    },
     /// A parameter that the caller passed does not make sense.
     InvalidParameter(String),
     /// Reading or writing a file failed.
@@ -33,6 +40,19 @@ impl fmt::Display for Error {
             Self::NoSuchGlyph(gid) => write!(f, "the font has no glyph {gid}; leave it out of the selection"),
             Self::MissingGlyph(gid) => {
                 write!(f, "glyph {gid} has no model in this font; convert the font with it selected")
+            }
+            Self::TrainingNotBuilt { gid, outlines_dropped } => {
+                let (reason, otherwise) = match outlines_dropped {
+                    true => ("its outline is to be dropped", "keep the outlines (no --drop-outlines)"),
+                    false => {
+                        ("the shape asked for is 'field'", "learn the hints of its outline (--shape outline)")
+                    }
+                };
+                write!(
+                    f,
+                    "glyph {gid} needs a trained field, as {reason}, and this program is built without training; \
+                     build it with `cargo build --release --bins --features train`, or {otherwise}"
+                )
             }
             Self::InvalidParameter(what) => write!(f, "invalid parameter: {what}"),
             Self::Io(what) => write!(f, "{what}"),

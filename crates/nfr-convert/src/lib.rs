@@ -2,6 +2,9 @@
 //! the teacher does not draw), `compose` (glyphs made of other glyphs' models), then either `outline` (outline models, in closed
 //! form) or `fit` (initial fields), `train` and `refine` (rate–distortion refinement of the integers), `writer` and `assemble`; `pipeline` runs them. Each stage's output is a
 //! plain type that the next one takes.
+//!
+//! `train` and burn are built with the feature `train`. Without it, a conversion that would train a field is
+//! [`Error::TrainingNotBuilt`].
 
 #![forbid(unsafe_code)]
 
@@ -28,6 +31,7 @@ pub mod refine;
 pub mod strip;
 pub mod teacher;
 pub mod temporary;
+#[cfg(feature = "train")]
 pub mod train;
 pub mod training_samples;
 pub mod writer;

@@ -78,10 +78,13 @@ fn with_units(units: u16) -> Vec<u8> {
     builder.build()
 }
 
+/// Steps of training, in builds that have it.
+const STEPS: usize = if cfg!(feature = "train") { 4 } else { 0 };
+
 fn options(font: &[u8]) -> Options {
     let mut options =
         Options { gids: gids(font, "BRags&"), ppem: 8..=40, shape: Shape::Field, ..Options::default() };
-    options.schedule.steps = 4;
+    options.schedule.steps = STEPS;
     options.refinement.rounds = 0;
     options
 }
@@ -212,6 +215,7 @@ fn options_at_their_limits_convert() {
     }
 }
 
+#[cfg(feature = "train")]
 #[test]
 fn a_training_that_diverges_is_an_error_and_no_blank_glyph() {
     let data = font("LiberationSans-Regular");
@@ -220,4 +224,31 @@ fn a_training_that_diverges_is_an_error_and_no_blank_glyph() {
     options.schedule.field_rate = f64::MAX;
     let error = converted(&data, &options).0.unwrap_err();
     assert!(matches!(&error, Error::InvalidParameter(text) if text.contains("not finite")), "{error}");
+}
+
+#[cfg(not(feature = "train"))]
+#[test]
+fn a_build_without_training_refuses_a_field_before_any_glyph_is_ready() {
+    let data = font("LiberationSans-Regular");
+    let (space, a) = (gids(&data, " ")[0], gids(&data, "A")[0]);
+    let mut fields = options(&data);
+    fields.gids = vec![space, a];
+    // Neither a blank glyph nor an initial fit is trained.
+    assert!(converted(&data, &fields).0.is_ok());
+    fields.schedule.steps = 1;
+    let dropped = Options { shape: Shape::Auto, drop_outlines: true, ..fields.clone() };
+    for (options, reason) in
+        [(&fields, "the shape asked for is 'field'"), (&dropped, "its outline is to be dropped")]
+    {
+        let (result, told) = converted(&data, options);
+        let error = result.unwrap_err();
+        assert_eq!(error, Error::TrainingNotBuilt { gid: a, outlines_dropped: options.drop_outlines });
+        for part in [&format!("glyph {a} "), reason, "cargo build --release --bins --features train"] {
+            assert!(error.to_string().contains(part), "{part:?} is not in {error}");
+        }
+        // The number of glyphs, which is planned, is all that is told.
+        assert_eq!(told, 1);
+    }
+    let outlines = Options { shape: Shape::Auto, ..fields };
+    assert!(converted(&data, &outlines).0.is_ok());
 }

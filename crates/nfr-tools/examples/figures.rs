@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example figures [-- OPTIONS] [FONT.ttf ...]`: printable ASCII at 8–64 ppem; without fonts,
 //! the three that README speaks of. `--quality 0,25,50,75,100` prints a line for each of these settings, and
-//! `--target mono` hints in x too, and
-//! `--shape field` trains fields. `--train-ppem 8-64:2` learns from these sizes alone and measures the error at the others.
+//! `--target mono` hints in x too, and `--shape field` trains fields, in a build with `--features train`. `--train-ppem 8-64:2`
+//! learns from these sizes alone and measures the error at the others.
 //! The error is measured on the finished files; the last but one column is against the plain outline, at sizes above
 //! the trained ones.
 

@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long, value_name = "TARGET", default_value_t, value_parser = target)]
     target: Target,
     /// Where models have their shapes from: outline (the font's own), field (their own), or auto, which is outline unless the
-    /// outlines are dropped
+    /// outlines are dropped; fields need a build with --features train
     #[arg(long, value_name = "SHAPE", default_value = "auto", value_parser = shape)]
     shape: Shape,
     /// How much error is worth how many bytes: 0 for the smallest file, 100 for the least error
@@ -60,7 +60,7 @@ pub struct Args {
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
-    /// burn's backend: flex, or ndarray where that is built in
+    /// burn's backend for training fields: flex, or ndarray where that is built in
     #[arg(long, value_name = "NAME", default_value = "flex", value_parser = backend)]
     backend: Backend,
     /// The font's index, if the input is a collection
@@ -68,7 +68,7 @@ pub struct Args {
     index: u32,
     /// Leave out the outlines of the glyphs that get models, for programs that draw only with those
     ///
-    /// Metrics, characters and layout stay. Everything else draws these glyphs as blanks.
+    /// Metrics, characters and layout stay. Everything else draws these glyphs as blanks. Their models are fields.
     #[arg(long)]
     drop_outlines: bool,
     /// Go on where an interrupted conversion to the same output stopped

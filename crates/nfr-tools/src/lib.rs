@@ -18,6 +18,12 @@ mod args;
 mod failure;
 mod files;
 mod progress;
+#[cfg(not(all(feature = "bench", feature = "lab")))]
+mod unbuilt;
 
 pub use args::{SelectionArgs, shape, target};
 pub use failure::{Failure, finish};
+#[cfg(not(feature = "bench"))]
+pub use unbuilt::bench;
+#[cfg(not(feature = "lab"))]
+pub use unbuilt::lab;

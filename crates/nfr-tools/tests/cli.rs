@@ -23,6 +23,33 @@ fn help_and_version_succeed() {
 }
 
 #[test]
+fn a_command_that_is_not_built_in_says_how_to_build_it() {
+    for (command, built) in [("bench", cfg!(feature = "bench")), ("lab", cfg!(feature = "lab"))] {
+        let usage = nfr(&["--help"]).succeeds().stdout;
+        let line = usage.lines().find(|line| line.trim_start().starts_with(command)).unwrap();
+        assert_eq!(line.contains("Not in this build"), !built, "{line}");
+        let advice = format!("`cargo build --release --bins --features {command}`");
+        for more in [&[][..], &["--help"], &["report", "--jobs", "2"]].into_iter().filter(|_| !built) {
+            nfr(&[&[command], more].concat()).rejects_usage(&[&format!("without `nfr {command}`"), &advice]);
+        }
+    }
+}
+
+#[cfg(not(feature = "train"))]
+#[test]
+fn without_training_fields_are_refused_and_nothing_is_written() {
+    let directory = Directory::new();
+    let parts = ["glyph 36 needs a trained field", "cargo build --release --bins --features train"];
+    let field = convert(&directory, SANS, &["--shape", "field"]);
+    field.fails_with(&[&parts[..], &["--shape outline"]].concat());
+    let dropped = convert(&directory, SANS, &["--drop-outlines"]);
+    dropped.fails_with(&[&parts[..], &["keep the outlines"]].concat());
+    // With a work file to go on with, too.
+    convert(&directory, SANS, &["--shape", "field", "--resume"]).fails_with(&parts);
+    assert!(directory.files().is_empty());
+}
+
+#[test]
 fn what_is_no_font_is_refused() {
     let directory = Directory::new();
     for bytes in [b"".as_slice(), b"hello", &[0; 4096], b"<html></html>"] {

@@ -1,6 +1,5 @@
 //! `nfr bench` as a person calls it. Nothing here looks at how long anything took.
 
-#![cfg(feature = "bench")]
 #![allow(clippy::unwrap_used)]
 
 mod common;

@@ -18,8 +18,10 @@ use nfr::internals::decode;
 const GIDS: [u64; 2] = [68, 74];
 const SIZES: std::ops::RangeInclusive<u64> = 10..=14;
 
+/// Fields, where they can be trained.
+const SHAPE: &str = if cfg!(feature = "train") { "field" } else { "outline" };
 /// Few glyphs at few sizes, so that training takes seconds.
-const QUICK: [&str; 6] = ["--text", "ag", "--ppem", "10-14", "--shape", "field"];
+const QUICK: [&str; 6] = ["--text", "ag", "--ppem", "10-14", "--shape", SHAPE];
 /// For what needs any font that is converted.
 const QUICKEST: [&str; 4] = ["--text", "i", "--ppem", "12"];
 
@@ -220,6 +222,21 @@ fn outlines_cannot_be_both_dropped_and_drawn() {
     assert!(directory.files().is_empty());
     let args = [&QUICKEST[..], &["--shape", "curve", SANS, &output]].concat();
     nfr_convert(&args).rejects_usage(&["use auto, outline or field"]);
+}
+
+#[cfg(feature = "train")]
+#[test]
+fn dropped_outlines_are_told_of_and_the_font_is_compared_all_the_same() {
+    let directory = Directory::new();
+    let output = directory.name("out.ttf");
+    let summary =
+        nfr_convert(&["--text", "i", "--ppem", "12", "--drop-outlines", SANS, &output]).succeeds().stdout;
+    for part in ["glyph programs", "fpgm", "prep", "cvt", "% of the original's 410712"] {
+        assert!(summary.contains(part), "{part:?} is not in {summary}");
+    }
+    assert!(nfr(&["info", &output]).succeeds().stdout.contains("dropped"));
+    assert!(nfr(&["info", &output, "--json"]).succeeds().stdout.contains("\"outlines_dropped\":true"));
+    nfr(&["diff", SANS, &output, "--ppem", "12"]).succeeds();
 }
 
 #[test]

@@ -21,7 +21,7 @@ use nfr_convert::{Conversion, Options, Shape, convert, resume};
 use read_fonts::types::GlyphId;
 use read_fonts::{FontRef, TableProvider};
 
-use common::{Directory, SANS, font, nfr, nfr_convert, sans};
+use common::{Directory, SANS, font, nfr_convert, sans};
 use samples::{Silent, gid, gids};
 
 /// Capitals and small letters with accents above and below, and all that they are made of but the accents.
@@ -128,8 +128,8 @@ fn an_accented_letter_alone_has_a_model_of_its_own() {
     assert!(composed(&conversion).is_empty());
 }
 
-/// Steps of the conversions that are interrupted: their weights must not be the first guesses.
-const STEPS: usize = 3;
+/// Steps of the conversions that are interrupted: where training is built, their weights must not be the first guesses.
+const STEPS: usize = if cfg!(feature = "train") { 3 } else { 0 };
 const RESUMED: &str = "abcdefghé";
 
 fn options_of_resumed(data: &[u8]) -> Options {
@@ -272,20 +272,6 @@ fn a_font_may_lose_all_its_outlines() {
         face.load_glyph(gid.into(), freetype::face::LoadFlag::RENDER).unwrap();
         assert_eq!(face.glyph().bitmap().width(), 0);
     }
-}
-
-#[test]
-fn dropped_outlines_are_told_of_and_the_font_is_compared_all_the_same() {
-    let directory = Directory::new();
-    let output = directory.name("out.ttf");
-    let summary =
-        nfr_convert(&["--text", "i", "--ppem", "12", "--drop-outlines", SANS, &output]).succeeds().stdout;
-    for part in ["glyph programs", "fpgm", "prep", "cvt", "% of the original's 410712"] {
-        assert!(summary.contains(part), "{part:?} is not in {summary}");
-    }
-    assert!(nfr(&["info", &output]).succeeds().stdout.contains("dropped"));
-    assert!(nfr(&["info", &output, "--json"]).succeeds().stdout.contains("\"outlines_dropped\":true"));
-    nfr(&["diff", SANS, &output, "--ppem", "12"]).succeeds();
 }
 
 #[test]

@@ -26,12 +26,6 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Whether all numbers are finite.
-    pub(crate) fn is_finite(&self) -> bool {
-        let all = [&self.field, &self.hinted[0], &self.hinted[1], &self.patterns, &self.embedding];
-        all.into_iter().flatten().all(|v| v.is_finite())
-    }
-
     /// Rounds to the integers that the table stores.
     pub fn quantise(&self) -> Weights {
         let bytes = |values: &[f32], steps: f32| {

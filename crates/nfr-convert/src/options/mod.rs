@@ -26,7 +26,7 @@ pub enum Shape {
     Auto,
     /// The outlines of the font.
     Outline,
-    /// Fields of their own.
+    /// Fields of their own, which are trained: it takes the feature `train`.
     Field,
 }
 
@@ -47,7 +47,7 @@ pub struct Options {
     pub seed: u64,
     /// Threads. The result does not depend on their number.
     pub jobs: usize,
-    /// burn's backend.
+    /// burn's backend for the training.
     pub backend: Backend,
     /// Where models have their shapes from.
     pub shape: Shape,
@@ -61,7 +61,7 @@ pub struct Options {
     pub refinement: Refinement,
     /// Whether glyphs are composed of others' models where their hints move them in the same way.
     pub compose: bool,
-    /// Whether the outlines of the glyphs that have models are left out of the font.
+    /// Whether the outlines of the glyphs that have models are left out of the font. Their models are fields then.
     pub drop_outlines: bool,
 }
 

@@ -1,7 +1,5 @@
 //! The options of the training.
 
-use burn::tensor::Device;
-
 use crate::error::Error;
 
 /// The steps and learning rates of the training.
@@ -78,15 +76,4 @@ pub enum Backend {
     /// burn-ndarray, which burn 0.22 deprecates.
     #[cfg(feature = "ndarray")]
     Ndarray,
-}
-
-impl Backend {
-    pub(crate) fn device(self) -> Device {
-        match self {
-            Self::Flex => Device::flex(),
-            #[cfg(feature = "ndarray")]
-            #[allow(deprecated)]
-            Self::Ndarray => Device::ndarray(),
-        }
-    }
 }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::training;
 use crate::compare::metrics::Sums;
 use crate::conversion::Progress;
 use crate::error::Error;
@@ -13,7 +14,6 @@ use crate::partial::Partial;
 use crate::predict::Predictor;
 use crate::refine::refine;
 use crate::teacher::{Teacher, TeacherAt};
-use crate::train::train;
 use crate::training_samples::GlyphSamples;
 use crate::writer::GlyphModel;
 use nfr::internals::Glyph;
@@ -77,17 +77,32 @@ impl GlyphTrainer<'_> {
     /// Trains all chunks, on `options.jobs` threads.
     pub(super) fn train_all(&self, gids: &[u16]) -> Result<Vec<TrainedGlyph>, Error> {
         let chunks: Vec<&[u16]> = gids.chunks(CHUNK).collect();
+        chunks.iter().try_for_each(|gids| self.check_training(gids))?;
         let trained = parallel::map(&chunks, self.stages.options.jobs, |gids| self.train_chunk(gids))?;
         Ok(trained.into_iter().flatten().collect())
     }
 
+    /// Fails if a chunk has to be trained and this build cannot do it.
+    fn check_training(&self, gids: &[u16]) -> Result<(), Error> {
+        if self.found(gids)?.is_some() {
+            return Ok(());
+        }
+        for gid in gids {
+            if !self.stages.teacher.unhinted_em(*gid)?.points.is_empty() {
+                training::check(*gid, self.stages.options)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The weights of a chunk in the work file.
+    fn found(&self, gids: &[u16]) -> Result<Option<Vec<Weights>>, Error> {
+        self.partial.map_or(Ok(None), |partial| partial.weights(gids, self.stages.scale))
+    }
+
     fn train_chunk(&self, gids: &[u16]) -> Result<Vec<TrainedGlyph>, Error> {
         let glyphs = gids.iter().map(|gid| self.stages.samples(*gid)).collect::<Result<Vec<_>, _>>()?;
-        let found = match self.partial {
-            Some(partial) => partial.weights(gids, self.stages.scale)?,
-            None => None,
-        };
-        let weights = match found {
+        let weights = match self.found(gids)? {
             Some(weights) => weights,
             None => {
                 let weights = self.weights(&glyphs)?;
@@ -118,7 +133,7 @@ impl GlyphTrainer<'_> {
             initial_fit(samples, self.stages.scale, options.target, options.capacity, options.seed)
         };
         let mut parameters: Vec<Parameters> = inked.iter().map(fit).collect();
-        train(&inked, &mut parameters, self.stages.scale, options.schedule, options.backend)?;
+        training::train(&inked, &mut parameters, self.stages.scale, options)?;
         for ((slot, parameters), samples) in slots.into_iter().zip(&parameters).zip(inked) {
             *slot = parameters.quantise();
             refine(slot, samples, self.stages.scale, options.refinement)?;

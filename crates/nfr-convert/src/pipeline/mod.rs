@@ -3,6 +3,7 @@
 mod fields;
 mod glyphs;
 mod outlines;
+mod training;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,7 +28,8 @@ use nfr::internals::table::{Header, Table};
 /// # Errors
 ///
 /// `Malformed` or `Unsupported` for a font that cannot be converted, `NoSuchGlyph` for a glyph that it does not have,
-/// `InvalidParameter` for options that make no sense.
+/// `InvalidParameter` for options that make no sense, `TrainingNotBuilt` for those that ask for fields, in a build without the
+/// feature `train`.
 pub fn convert(input: &[u8], options: &Options, progress: &dyn Progress) -> Result<Conversion, Error> {
     resume(input, options, progress, None)
 }

@@ -9,7 +9,7 @@ mod smoothness;
 mod tensors;
 
 use burn::optim::{Adam, AdamConfig, AdamState, Optimizer};
-use burn::tensor::Tensor;
+use burn::tensor::{Device, Tensor};
 
 use crate::error::Error;
 use crate::fit::Parameters;
@@ -39,6 +39,16 @@ impl<const D: usize> Moments<D> {
     }
 }
 
+/// Where burn computes.
+fn device(backend: Backend) -> Device {
+    match backend {
+        Backend::Flex => Device::flex(),
+        #[cfg(feature = "ndarray")]
+        #[allow(deprecated)]
+        Backend::Ndarray => Device::ndarray(),
+    }
+}
+
 /// Trains a chunk of glyphs together. They do not influence each other.
 ///
 /// # Errors
@@ -52,7 +62,7 @@ pub fn train(
     schedule: Schedule,
     backend: Backend,
 ) -> Result<(), Error> {
-    let device = backend.device().autodiff();
+    let device = device(backend).autodiff();
     let models =
         parameters.iter().map(|p| GridFit::new(&p.quantise(), scale)).collect::<Result<Vec<_>, _>>()?;
     let units = f32::from(scale.units_per_em());
@@ -113,7 +123,7 @@ pub fn train(
     for (parameters, mut trained) in parameters.iter_mut().zip(all_sizes) {
         without_larger_sizes(&mut trained, scale.sizes());
         // Rounding turns NaN into zero, and the glyph would be blank.
-        if !trained.is_finite() {
+        if !is_finite(&trained) {
             return Err(Error::InvalidParameter(
                 "the training came to numbers that are not finite; use lower learning rates".into(),
             ));
@@ -121,6 +131,12 @@ pub fn train(
         *parameters = trained;
     }
     Ok(())
+}
+
+/// Whether all trained numbers are finite.
+fn is_finite(trained: &Parameters) -> bool {
+    let Parameters { field, hinted: [x, y], patterns, embedding, .. } = trained;
+    [field, x, y, patterns, embedding].into_iter().flatten().all(|v| v.is_finite())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A paragraph from the models, beside the hinted truth and the plain outlines.
 //!
-//! `cargo run --release --example paragraph -- NEURAL.ttf ORIGINAL.ttf OUT.png [--text TEXT] [--ppem 11,13,16,24]
+//! `cargo run --release --features bench --example paragraph -- NEURAL.ttf ORIGINAL.ttf OUT.png [--text TEXT] [--ppem 11,13,16,24]
 //! [--width 320]`: for each size a row of three columns, black on white, one pixel for a pixel. The text is shaped with
 //! its kerning; advances are the font's own, neither hinted nor rounded, and each glyph is drawn with its origin at
 //! the nearest quarter of a pixel, on a baseline at a whole one.

@@ -18,9 +18,7 @@ enum Command {
     Render(cli::render::Args),
     Diff(cli::diff::Args),
     Info(cli::info::Args),
-    #[cfg(feature = "bench")]
     Bench(cli::bench::Args),
-    #[cfg(feature = "lab")]
     Lab(cli::lab::Args),
 }
 
@@ -29,9 +27,7 @@ fn main() -> ExitCode {
         Command::Render(args) => cli::render::run(&args),
         Command::Diff(args) => cli::diff::run(&args),
         Command::Info(args) => cli::info::run(&args),
-        #[cfg(feature = "bench")]
         Command::Bench(args) => cli::bench::run(&args),
-        #[cfg(feature = "lab")]
         Command::Lab(args) => cli::lab::run(&args),
     })
 }
