@@ -145,6 +145,13 @@ impl Font {
         units * ppem / f32::from(self.0.scale.units_per_em())
     }
 
+    /// The left side bearing of `hmtx` in pixels, linear in the size; 0 for a glyph that the font does not have.
+    pub(super) fn side_bearing(&self, glyph: u32, ppem: f32) -> f32 {
+        let bearing =
+            self.0.font.tables().hmtx().ok().and_then(|hmtx| hmtx.side_bearing(GlyphId::new(glyph)));
+        f32::from(bearing.unwrap_or(0)) * ppem / f32::from(self.0.scale.units_per_em())
+    }
+
     /// Metrics of a line of text at a size in pixels per em.
     pub fn line_metrics(&self, ppem: f32) -> LineMetrics {
         LineMetrics::new(&self.0.font, ppem)

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use super::draw::{draw, draw_one};
 use super::flatten::Polygons;
-use super::outline::{draw_polygons, flatten};
+use super::outline::{draw_polygons, flatten, leftmost};
 use super::scratch::Scratch;
 use crate::bitmap::{Bitmap, Canvas};
 use crate::error::Error;
@@ -124,6 +124,21 @@ impl Glyph {
                 Some(outlines.advances.get(size.index).copied().unwrap_or(0))
             }
             _ => None,
+        }
+    }
+
+    /// The leftmost point of its outlines in 1/64 pixel. None for a glyph that has none.
+    ///
+    /// # Errors
+    ///
+    /// `BitmapTooLarge` for points that are too far away.
+    pub(super) fn left(&self, ppem: f32, scratch: &mut Scratch) -> Result<Option<i32>, Error> {
+        match &self.drawn {
+            Drawn::Outlines(outlines) => match outlines.at(ppem) {
+                Some((size, parts)) => leftmost(parts, &size, scratch),
+                None => Ok(None),
+            },
+            _ => Ok(None),
         }
     }
 
@@ -267,6 +282,14 @@ impl Glyph {
 }
 
 impl Outlines {
+    /// The outlines at a size, with their offsets in 1/64 pixel. None if there are none.
+    fn at(&self, ppem: f32) -> Option<(HintedSize, impl Iterator<Item = (&OutlineModel, [i32; 2])>)> {
+        let (first, _) = self.parts.first()?;
+        let (size, units) = (first.scale.at(ppem), first.scale.units_per_em());
+        let parts = self.parts.iter().map(move |(model, part)| (&**model, part.offset_at(&size, units)));
+        Some((size, parts))
+    }
+
     fn draw<'b>(
         &self,
         kept: &mut Flattened,
@@ -278,12 +301,9 @@ impl Outlines {
         if kept.ppem == options.ppem {
             return draw_polygons(&kept.polygons, options, scratch, budget, room);
         }
-        let Some((first, _)) = self.parts.first() else {
+        let Some((size, parts)) = self.at(options.ppem) else {
             return Ok(room(Placement::default())?.map(|_| Placement::default()));
         };
-        let size = first.scale.at(options.ppem);
-        let units = first.scale.units_per_em();
-        let parts = self.parts.iter().map(|(model, part)| (&**model, part.offset_at(&size, units)));
         flatten(parts, &size, scratch, budget)?;
         let polygons = core::mem::take(&mut scratch.polygons);
         if polygons.vertices[0].len() <= MAX_KEPT {

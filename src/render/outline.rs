@@ -86,6 +86,26 @@ pub(super) fn flatten<'m>(
     Ok(())
 }
 
+/// The leftmost point of outlines at a size, in 1/64 pixel. None if they have no points.
+///
+/// # Errors
+///
+/// `BitmapTooLarge`.
+pub(super) fn leftmost<'m>(
+    models: impl Iterator<Item = (&'m OutlineModel, [i32; 2])>,
+    size: &HintedSize,
+    scratch: &mut Scratch,
+) -> Result<Option<i32>, Error> {
+    let mut left = None;
+    for (model, offset) in models {
+        hint(model, size, &mut scratch.outline);
+        check_reach(&scratch.outline, offset)?;
+        let own = scratch.outline[0].iter().min().map(|x| x + offset[0]);
+        left = left.min(own).or(own).or(left);
+    }
+    Ok(left)
+}
+
 /// Draws the polygons of `scratch` into the canvas that `room` gives for their placement, if it gives one. Pixels are what
 /// they cover together.
 ///

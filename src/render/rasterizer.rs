@@ -116,6 +116,23 @@ impl Rasterizer {
         Ok((((scaled + 32) >> 6) + i32::from(more)) as f32)
     }
 
+    /// The hinted left side bearing in pixels: how far the leftmost point of the outline is from the glyph's origin, control
+    /// points included, in steps of 1/64. It is the one of `hmtx`, linear in the size, for glyphs without an outline and for
+    /// those whose models do not know it (fields, networks, missing models).
+    ///
+    /// # Errors
+    ///
+    /// `NoSuchGlyph`, `InvalidSize`, `BitmapTooLarge`, and those of a damaged model.
+    pub fn hinted_side_bearing(&mut self, glyph: u32, ppem: f32) -> Result<f32, Error> {
+        DrawOptions::new(ppem).checked()?;
+        let left = match self.cache.get(&mut self.decoder, glyph, ppem) {
+            Ok(entry) => entry.decoded.left(ppem, &mut self.scratch)?,
+            Err(Error::MissingModel(missing)) if missing == glyph => None,
+            Err(error) => return Err(error),
+        };
+        Ok(left.map_or_else(|| self.font().side_bearing(glyph, ppem), |left| left as f32 / 64.0))
+    }
+
     /// Draws a glyph into a buffer of the rasterizer's own, and lends it until the next drawing.
     ///
     /// # Errors

@@ -47,11 +47,11 @@ fn at_quality_100_bitmaps_and_advances_are_those_of_the_hints() {
                 let teacher = teacher.at(ppem).unwrap();
                 for &gid in &gids {
                     let advance = rasterizer.hinted_advance(gid.into(), ppem.into()).unwrap();
-                    assert_eq!(
-                        Some(advance),
-                        teacher.hinted(gid).unwrap().advance,
-                        "{name} {target} {gid} {ppem}"
-                    );
+                    let hinted = teacher.hinted(gid).unwrap();
+                    assert_eq!(Some(advance), hinted.advance, "{name} {target} {gid} {ppem}");
+                    let bearing = rasterizer.hinted_side_bearing(gid.into(), ppem.into()).unwrap();
+                    let left = hinted.points.iter().map(|point| point[0]).reduce(f32::min);
+                    assert_eq!(bearing, left.unwrap_or(0.0), "{name} {target} {gid} {ppem}");
                 }
             }
         }

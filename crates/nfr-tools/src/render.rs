@@ -29,7 +29,7 @@ pub struct Args {
     #[arg(long, value_name = "SIZES", default_value = "8-64")]
     ppem: PpemList,
     /// Print one JSON object a line for each glyph and size: gid, ppem, left, top, width, height, advance,
-    /// hinted_advance, and the coverage in base64
+    /// hinted_advance, hinted_side_bearing, and the coverage in base64
     #[arg(long)]
     json: bool,
     /// Draw a sheet: the text in a line for each size, or else the glyphs in order
@@ -51,6 +51,7 @@ struct RenderedGlyph {
     height: u32,
     advance: f32,
     hinted_advance: f32,
+    hinted_side_bearing: f32,
     pixels: String,
 }
 
@@ -97,6 +98,7 @@ fn print_lines(args: &Args, font: &Font, source: &Neural, gids: &[u16]) -> Resul
                 height: place.height,
                 advance: font.advance(gid.into(), ppem.into()),
                 hinted_advance: rasterizer.hinted_advance(gid.into(), ppem.into())?,
+                hinted_side_bearing: rasterizer.hinted_side_bearing(gid.into(), ppem.into())?,
                 pixels: STANDARD.encode(&bitmap.pixels),
             };
             serde_json::to_writer(&mut out, &line).map_err(io::Error::from)?;
