@@ -99,6 +99,8 @@ struct ReportFile<'r> {
     ppem: String,
     seed: u64,
     glyphs: Vec<GlyphEntry>,
+    /// The glyphs that have no model.
+    left_out: &'r [u16],
     table_bytes: usize,
     bytes_per_glyph: f64,
     /// The hint programs that the table stands in place of.
@@ -170,12 +172,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
     // The figures are those of the finished file, not of the models in memory.
     let names = [&args.input, &args.output].map(|path| path.display().to_string());
-    let comparison = FontPair::open(&input, args.index, &conversion.font)?.report(
-        [&names[0], &names[1]],
-        &options.gids,
-        &args.ppem,
-        args.jobs,
-    )?;
+    let names = [names[0].as_str(), &names[1]];
+    let pair = FontPair::open(&input, args.index, &conversion.font)?;
+    let mut gids = options.gids.clone();
+    gids.retain(|gid| conversion.left_out.binary_search(gid).is_err());
+    let comparison = pair.report(names, &gids, &args.ppem, args.jobs)?;
     output.write(&conversion.font)?;
     partial.map(Partial::remove).transpose()?;
 
@@ -251,7 +252,7 @@ fn prepare(
 fn summary<'r>(
     args: &Args,
     input: &[u8],
-    conversion: &Conversion,
+    conversion: &'r Conversion,
     comparison: &'r Report,
     seconds: f64,
 ) -> ReportFile<'r> {
@@ -271,6 +272,7 @@ fn summary<'r>(
         ppem: args.ppem.to_string(),
         seed: args.seed,
         glyphs: conversion.glyphs.iter().map(glyph).collect(),
+        left_out: &conversion.left_out,
         table_bytes: conversion.table_bytes,
         bytes_per_glyph: comparison.header.bytes_per_glyph,
         hint_bytes: HintBytesEntry {
