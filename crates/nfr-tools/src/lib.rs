@@ -15,6 +15,7 @@ pub mod lab;
 pub mod render;
 
 mod args;
+mod exactness;
 mod failure;
 mod files;
 mod progress;
