@@ -47,7 +47,9 @@ pub mod internals {
     pub use crate::error::Damage;
     pub use crate::number::mul_fixed;
     pub use crate::placement::union;
-    pub use crate::render::{Decoder, Font, Glyph, Scratch, components, head_units, open, recode_outlines};
+    pub use crate::render::{
+        Decoder, Font, Glyph, HintedOutline, Scratch, components, head_units, open, recode_outlines,
+    };
 
     use crate::Error;
     use model::gridfit::Scale;

@@ -1,5 +1,7 @@
 //! A glyph that is ready to draw: one model, several as the parts of a composed glyph, or a network.
 
+mod hinted;
+
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -19,6 +21,8 @@ use crate::model::sizes::HintedSize;
 use crate::network::Network;
 use crate::options::DrawOptions;
 use crate::placement::{Placement, union};
+
+pub use hinted::HintedOutline;
 
 /// One glyph, decoded and ready to draw.
 #[derive(Debug, Clone)]

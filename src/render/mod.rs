@@ -15,7 +15,7 @@ mod strips;
 
 pub use decoder::Decoder;
 pub use font::{Font, head_units, open};
-pub use glyph::Glyph;
+pub use glyph::{Glyph, HintedOutline};
 pub use metrics::LineMetrics;
 pub use rasterizer::Rasterizer;
 pub use scratch::Scratch;

@@ -39,9 +39,12 @@ pub struct GlyphReport {
 pub struct Conversion {
     /// The new font file.
     pub font: Vec<u8>,
-    /// One report for each glyph of the table, in ascending order: those selected, and parts of them.
+    /// One report for each glyph of the table, in ascending order: those selected, less those left out, and parts of them.
     pub glyphs: Vec<GlyphReport>,
-    /// The sums over all selected glyphs and sizes.
+    /// The selected glyphs that have no model, ascending: with [`Shape::Outline`](crate::Shape::Outline), those whose contours
+    /// hinting changes.
+    pub left_out: Vec<u16>,
+    /// The sums over all selected glyphs that have models, and all sizes.
     pub sums: Sums,
     /// The length of the `Nfrt` table.
     pub table_bytes: usize,

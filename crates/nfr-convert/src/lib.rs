@@ -23,6 +23,7 @@ pub mod options;
 mod outline;
 mod parallel;
 pub mod partial;
+mod path_points;
 mod pipeline;
 mod predict;
 pub mod random;

@@ -13,6 +13,8 @@ pub struct GlyphSamples {
     pub outline: Outline,
     /// The first error of the glyph's hint program, if it fails at any size.
     pub hint_error: Option<String>,
+    /// Whether hinting changes the contours at any size ([`Outline::has_contours_of`]).
+    pub contours_change: bool,
     /// One sample for each size, ascending.
     pub sizes: Vec<TrainingSample>,
 }
@@ -22,7 +24,8 @@ pub struct GlyphSamples {
 pub struct TrainingSample {
     /// Pixels per em.
     pub ppem: u16,
-    /// The hinted outline's coordinates in pixels, in the order of those of the unhinted outline.
+    /// The hinted outline's coordinates in pixels, in the order of those of the unhinted outline. Where hinting changes the
+    /// contours, they are the unhinted ones.
     pub points: Vec<[f32; 2]>,
     /// The hinted advance width in whole pixels; none where it is not known.
     pub advance: Option<i32>,
@@ -48,8 +51,7 @@ impl GlyphSamples {
     ///
     /// # Errors
     ///
-    /// As the teacher's and [`Outline::rasterize`]; `Unsupported` if a hint program changes the number of points, or if
-    /// a composite puts a point outside the range of 16 bits.
+    /// As the teacher's and [`Outline::rasterize`]; `Unsupported` if a composite puts a point outside the range of 16 bits.
     pub fn draw(teacher: &Teacher, sizes: &[TeacherAt], gid: u16) -> Result<Self, Error> {
         let outline = teacher.unhinted_em(gid)?;
         let units = f32::from(teacher.units_per_em());
@@ -60,25 +62,24 @@ impl GlyphSamples {
                 v * units
             )));
         }
-        let mut hint_error = None;
+        let (mut hint_error, mut contours_change) = (None, false);
         let sizes = sizes
             .iter()
             .map(|at| {
                 let (hinted, error) = at.hinted_with_error(gid)?;
                 hint_error = hint_error.take().or(error);
                 let bitmap = hinted.rasterize()?;
-                if hinted.points.len() != outline.points.len() {
-                    return Err(Error::Unsupported(format!(
-                        "the hint program of glyph {gid} changes its outline's structure at {} ppem; leave the glyph out",
-                        at.ppem()
-                    )));
-                }
                 let advance = hinted.advance.map(|pixels| pixels.round() as i32);
-                let points = hinted.points;
+                let points = if hinted.has_contours_of(&outline) {
+                    hinted.points
+                } else {
+                    contours_change = true;
+                    outline.points.iter().map(|p| p.map(|v| v * f32::from(at.ppem()))).collect()
+                };
                 Ok(TrainingSample { ppem: at.ppem(), points, advance, bitmap, predicted: false })
             })
-            .collect::<Result<_, _>>()?;
-        Ok(Self { gid, outline, hint_error, sizes })
+            .collect::<Result<_, Error>>()?;
+        Ok(Self { gid, outline, hint_error, contours_change, sizes })
     }
 }
 

@@ -8,9 +8,9 @@ use nfr::{Font, Rasterizer, Target};
 use nfr_convert::teacher::Teacher;
 use nfr_convert::{Conversion, Options, Quality, convert};
 use proptest::prelude::*;
+use read_fonts::FontRef;
 use read_fonts::types::Tag;
-use read_fonts::{FontRef, TableProvider};
-use samples::{Silent, font, gids};
+use samples::{Silent, font, gids, with_changed_outline};
 use write_fonts::FontBuilder;
 
 const FONTS: [&str; 3] = ["LiberationSans-Regular", "LiberationSerif-Regular", "DejaVuSans"];
@@ -122,20 +122,6 @@ fn a_size_is_drawn_alike_after_smaller_and_after_larger_ones() {
         let fresh = sizes.map(|ppem| Rasterizer::new(&font).render(gid.into(), ppem).unwrap());
         assert!(warm == fresh);
     }
-}
-
-/// The font with another byte in its table `glyf`.
-fn with_changed_outline(data: &[u8], gid: u16) -> Vec<u8> {
-    let original = FontRef::new(data).unwrap();
-    let mut glyf = original.table_data(Tag::new(b"glyf")).unwrap().as_bytes().to_vec();
-    let loca = original.loca(None).unwrap();
-    // The last byte of a simple glyph that is not padding: a coordinate.
-    let end = loca.get_raw(usize::from(gid) + 1).unwrap() as usize;
-    let at = (0..end).rev().find(|at| glyf[*at] != 0).unwrap();
-    glyf[at] ^= 1;
-    let mut builder = FontBuilder::new();
-    builder.add_raw(Tag::new(b"glyf"), glyf).copy_missing_tables(original);
-    builder.build()
 }
 
 #[test]

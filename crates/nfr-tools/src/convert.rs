@@ -8,9 +8,10 @@ use clap::Parser;
 use serde::Serialize;
 
 use super::args::{SelectionArgs, all_cores, jobs, shape, target};
+use super::exactness::exceptions;
 use super::failure::Failure;
 use super::files::{Output, read, same_file};
-use super::progress::{Reporter, Verbosity};
+use super::progress::{Reporter, Verbosity, print_line};
 use nfr::Target;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::report::{Report, glyph_count_text};
@@ -51,7 +52,8 @@ pub struct Args {
     shape: Shape,
     /// How much error is worth how many bytes: 0 for the smallest file, 100 for the least error
     ///
-    /// With outlines, 100 is exact: every point is where the hints put it.
+    /// With outlines, 100 is exact: every point is where the hints put it. A warning says for which glyphs and sizes it is not, and
+    /// nfr verify tells more.
     #[arg(long, value_name = "0-100", default_value = "50", value_parser = quality)]
     quality: Quality,
     /// The seed of whatever is drawn at random; the same seed gives the same font
@@ -99,6 +101,8 @@ struct ReportFile<'r> {
     ppem: String,
     seed: u64,
     glyphs: Vec<GlyphEntry>,
+    /// The glyphs that have no model.
+    left_out: &'r [u16],
     table_bytes: usize,
     bytes_per_glyph: f64,
     /// The hint programs that the table stands in place of.
@@ -170,12 +174,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
     // The figures are those of the finished file, not of the models in memory.
     let names = [&args.input, &args.output].map(|path| path.display().to_string());
-    let comparison = FontPair::open(&input, args.index, &conversion.font)?.report(
-        [&names[0], &names[1]],
-        &options.gids,
-        &args.ppem,
-        args.jobs,
-    )?;
+    let names = [names[0].as_str(), &names[1]];
+    let pair = FontPair::open(&input, args.index, &conversion.font)?;
+    let mut gids = options.gids.clone();
+    gids.retain(|gid| conversion.left_out.binary_search(gid).is_err());
+    let comparison = pair.report(names, &gids, &args.ppem, args.jobs)?;
+    if options.fidelity.is_exact() && !args.quiet {
+        warn_of_exceptions(&pair, names, args, &options)?;
+    }
     output.write(&conversion.font)?;
     partial.map(Partial::remove).transpose()?;
 
@@ -185,6 +191,22 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         file.write((json + "\n").as_bytes())?;
     }
     if args.quiet { Ok(()) } else { print_summary(&contents) }
+}
+
+/// Warns of glyphs and sizes of a conversion of quality 100 that are not exact: those of `--ppem` and those that were learned.
+fn warn_of_exceptions(
+    pair: &FontPair<'_>,
+    names: [&str; 2],
+    args: &Args,
+    options: &Options,
+) -> Result<(), Failure> {
+    let (first, last) = pair.font().ppem_range();
+    let sizes = args.ppem.union(&PpemList::from(first..=last));
+    let verification = pair.verify(names, &options.gids, &sizes, args.jobs)?;
+    if let Some(line) = exceptions(&verification, (&(first..=last), options.ppem_step)) {
+        print_line(&format!("warning: {line}"));
+    }
+    Ok(())
 }
 
 /// The sizes to learn, and the step between them.
@@ -251,7 +273,7 @@ fn prepare(
 fn summary<'r>(
     args: &Args,
     input: &[u8],
-    conversion: &Conversion,
+    conversion: &'r Conversion,
     comparison: &'r Report,
     seconds: f64,
 ) -> ReportFile<'r> {
@@ -271,6 +293,7 @@ fn summary<'r>(
         ppem: args.ppem.to_string(),
         seed: args.seed,
         glyphs: conversion.glyphs.iter().map(glyph).collect(),
+        left_out: &conversion.left_out,
         table_bytes: conversion.table_bytes,
         bytes_per_glyph: comparison.header.bytes_per_glyph,
         hint_bytes: HintBytesEntry {

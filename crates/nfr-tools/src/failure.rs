@@ -27,6 +27,11 @@ impl Failure {
         Self { code: WRONG_USAGE, message: message.into() }
     }
 
+    /// The same failure with exit code 2, for a tool whose exit code 1 says that it has compared and found a difference.
+    pub(super) fn with_code_of_errors(self) -> Self {
+        Self { code: WRONG_USAGE, ..self }
+    }
+
     /// Prepends the place, such as a file's name.
     pub(super) fn at(self, place: impl std::fmt::Display) -> Self {
         Self { message: format!("{place}: {}", self.message), ..self }

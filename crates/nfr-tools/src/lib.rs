@@ -1,7 +1,7 @@
 //! The command-line tools as functions; the binaries only parse their arguments.
 //!
-//! Exit codes: 0 done, 1 failed or a threshold missed, 2 wrong usage. Results go to stdout, progress and
-//! messages to stderr.
+//! Exit codes: 0 done, 1 failed or a threshold missed, 2 wrong usage; `nfr verify` exits with 1 for a difference only, and with 2 for
+//! every error. Results go to stdout, progress and messages to stderr.
 
 #![forbid(unsafe_code)]
 
@@ -13,8 +13,10 @@ pub mod info;
 #[cfg(feature = "lab")]
 pub mod lab;
 pub mod render;
+pub mod verify;
 
 mod args;
+mod exactness;
 mod failure;
 mod files;
 mod progress;

@@ -136,7 +136,8 @@ fn print_lines(stop: &Receiver<()>, state: &Mutex<State>) {
     }
 }
 
-fn print_line(text: &str) {
+/// Prints a line to stderr.
+pub(super) fn print_line(text: &str) {
     // Progress that nobody reads must not stop the work.
     drop(writeln!(io::stderr(), "{text}"));
 }

@@ -5,16 +5,20 @@ use std::collections::HashMap;
 use read_fonts::FontRef;
 
 use super::diff::{Sources, compare};
+use super::points::Compared;
 use super::report::{Report, ReportHeader};
-use super::source::{Hinted, Neural, Unhinted};
+use super::source::{Hinted, Neural, Unhinted, patient};
+use super::verification::{NoPoints, NotCompared, Subject, Verification};
 use crate::assemble::outline_hash;
 use crate::error::Error;
 use crate::open::{open, owned};
+use crate::parallel;
 use crate::ppem::PpemList;
-use crate::select::glyph_names;
+use crate::select::{glyph_count, glyph_names};
 use crate::teacher::Teacher;
 use crate::teacher::UnhintedOutlines;
 use nfr::Font;
+use nfr::internals::{Decoder, Glyph};
 
 /// An original and the neural font made from it, checked to belong together.
 pub struct FontPair<'a> {
@@ -32,16 +36,27 @@ impl<'a> FontPair<'a> {
     /// As [`open`], [`Font::new`] and [`Teacher::new`]; `InvalidParameter` if the neural font's outlines
     /// are not those that its models were trained from.
     pub fn open(original: &'a [u8], index: u32, neural: &'a [u8]) -> Result<Self, Error> {
-        let neural_file = open(neural, 0).map_err(|e| about("the neural font", e))?;
-        let font = Font::new(neural.to_vec()).map_err(|e| about("the neural font", e.into()))?;
-        let original = open(original, index).map_err(|e| about("the original font", e))?;
-        let teacher = Teacher::new(&original, font.target()).map_err(|e| about("the original font", e))?;
-        if !font.outlines_match() {
+        let pair = Self::open_edited(original, index, neural)?;
+        if !pair.font.outlines_match() {
             return Err(Error::InvalidParameter(
                 "the neural font's outlines were changed after its models were trained; convert it again"
                     .into(),
             ));
         }
+        Ok(pair)
+    }
+
+    /// Opens both files as [`FontPair::open`] does, and a neural font whose outlines were changed, too.
+    ///
+    /// # Errors
+    ///
+    /// As [`open`], [`Font::new`] and [`Teacher::new`]; `InvalidParameter` if outlines were dropped and those of the original are
+    /// not the ones that the models were trained from.
+    pub fn open_edited(original: &'a [u8], index: u32, neural: &'a [u8]) -> Result<Self, Error> {
+        let neural_file = open(neural, 0).map_err(|e| about("the neural font", e))?;
+        let font = Font::new(neural.to_vec()).map_err(|e| about("the neural font", e.into()))?;
+        let original = open(original, index).map_err(|e| about("the original font", e))?;
+        let teacher = Teacher::new(&original, font.target()).map_err(|e| about("the original font", e))?;
         if font.outlines_dropped() && outline_hash(&original)? != nfr::internals::header(&font).outline_hash {
             return Err(Error::InvalidParameter(
                 "the outlines of the original font are not those that the models were trained from; pass the \
@@ -71,22 +86,43 @@ impl<'a> FontPair<'a> {
     ///
     /// # Errors
     ///
-    /// `InvalidParameter` naming the first that has not.
+    /// `InvalidParameter` naming the first that has not, or if the fonts have not the same number of glyphs.
     pub fn check_outlines(&self, gids: &[u16]) -> Result<(), Error> {
         // Without them, the hash of the original's has been checked.
         if self.font.outlines_dropped() {
             return Ok(());
+        }
+        let (ours, theirs) = (glyph_count(&self.original)?, self.font.glyph_count());
+        if ours != theirs {
+            return Err(Error::InvalidParameter(format!(
+                "the original font has {ours} glyphs and the neural one {theirs}; pass the font that the neural one was \
+                 converted from"
+            )));
         }
         let outlines = UnhintedOutlines::new(&self.neural_file)?;
         for &gid in gids {
             let plain = self.teacher.unhinted_em(gid)?;
             if !matches!(outlines.em(gid), Ok(outline) if outline.points == plain.points) {
                 return Err(Error::InvalidParameter(format!(
-                    "glyph {gid} is not the same in the two fonts; pass the font that the neural one was converted from"
+                    "glyph {gid}{} is not the same in the two fonts; pass the font that the neural one was converted from",
+                    self.other_name(gid)?
                 )));
             }
         }
         Ok(())
+    }
+
+    /// A glyph's names in the two fonts if they differ, which tells of another order of glyphs.
+    fn other_name(&self, gid: u16) -> Result<String, Error> {
+        let (ours, theirs) = (glyph_names(&self.original)?, glyph_names(&self.neural_file)?);
+        Ok(match (ours.get(&gid), theirs.get(&gid)) {
+            (Some(ours), Some(theirs)) if ours != theirs => {
+                format!(
+                    " ('{ours}' in the original font, '{theirs}' in the neural one: their order of glyphs differs)"
+                )
+            }
+            _ => String::new(),
+        })
     }
 
     /// Bytes of the `Nfrt` table for each glyph in it.
@@ -116,6 +152,64 @@ impl<'a> FontPair<'a> {
             bytes_per_glyph: self.bytes_per_glyph(),
         };
         let tallies = self.with_sources(gids, |sources| compare(sources, gids, ppem.sizes(), jobs))?;
+        Ok(Report::new(header, &tallies, self.labels()?))
+    }
+
+    /// Compares the hinted points and advance widths of glyphs at sizes with those of the original. `names` are the two files'
+    /// paths, original first. Glyphs that have no points are told.
+    ///
+    /// # Errors
+    ///
+    /// Those of a damaged model, and as [`FontPair::check_outlines`] for the glyphs that have points, and [`Teacher::at`].
+    pub fn verify(
+        &self,
+        names: [&str; 2],
+        gids: &[u16],
+        ppem: &PpemList,
+        jobs: usize,
+    ) -> Result<Verification, Error> {
+        let subject = Subject {
+            original: names[0].to_owned(),
+            neural: names[1].to_owned(),
+            target: self.font.target().name().to_owned(),
+            ppem: ppem.to_string(),
+            glyphs: gids.len(),
+        };
+        let (mut glyphs, mut not_compared) = (Vec::new(), Vec::new());
+        let mut decoder = Decoder::new(&self.font, patient());
+        for &gid in gids {
+            match self.outlines_of(gid, &mut decoder)? {
+                Ok(glyph) => glyphs.push((gid, glyph)),
+                Err(reason) => not_compared.push(NotCompared { gid, reason }),
+            }
+        }
+        self.check_outlines(&glyphs.iter().map(|(gid, _)| *gid).collect::<Vec<_>>())?;
+        let sizes = ppem.sizes().iter().map(|ppem| self.teacher.at(*ppem)).collect::<Result<Vec<_>, _>>()?;
+        let compared =
+            Compared { teacher: &self.teacher, sizes: &sizes, font: &self.font, limits: patient() };
+        let tallies = parallel::map(&glyphs, jobs, |(gid, glyph)| compared.glyph(*gid, glyph))?;
+        Ok(Verification::new(subject, &tallies, not_compared, self.labels()?))
+    }
+
+    /// A glyph that outlines draw, or why there are none.
+    fn outlines_of(&self, gid: u16, decoder: &mut Decoder) -> Result<Result<Glyph, NoPoints>, Error> {
+        let table = nfr::internals::table(&self.font)?;
+        if table.is_network(gid.into()) {
+            return Ok(Err(NoPoints::Network));
+        }
+        if table.outlines().find(gid.into()).is_none() {
+            let reason = if table.contains(gid.into()) { NoPoints::Field } else { NoPoints::NoModel };
+            return Ok(Err(reason));
+        }
+        match decoder.glyph(gid.into()) {
+            Ok(glyph) => Ok(Ok(glyph)),
+            Err(nfr::Error::StaleModel(_)) => Ok(Err(NoPoints::Stale)),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The name and the first character of each glyph.
+    fn labels(&self) -> Result<impl Fn(u16) -> (Option<String>, Option<char>) + use<>, Error> {
         let mut characters = HashMap::new();
         for (code, gid) in owned(&self.original)?.charmap().unicodes() {
             if let Some(character) = char::from_u32(code) {
@@ -123,8 +217,7 @@ impl<'a> FontPair<'a> {
             }
         }
         let names = glyph_names(&self.original)?;
-        let label = |gid: u16| (names.get(&gid).cloned(), characters.get(&gid.into()).copied());
-        Ok(Report::new(header, &tallies, label))
+        Ok(move |gid: u16| (names.get(&gid).cloned(), characters.get(&gid.into()).copied()))
     }
 
     /// Calls `f` with the three sources of bitmaps of these glyphs: hinted, neural and unhinted.

@@ -186,16 +186,16 @@ impl fmt::Display for Report {
 impl GlyphErrors {
     /// The glyph's number, name and character.
     pub fn title(&self) -> String {
-        let mut title = self.gid.to_string();
-        if let Some(name) = &self.name {
-            title = format!("{title} {name}");
-        }
-        match self.character {
-            Some(c) if !c.is_control() && self.name.as_deref() != Some(c.to_string().as_str()) => {
-                format!("{title} ({c})")
-            }
-            _ => title,
-        }
+        glyph_title(self.gid, self.name.as_deref(), self.character)
+    }
+}
+
+/// A glyph's number, name and character.
+pub(super) fn glyph_title(gid: u16, name: Option<&str>, character: Option<char>) -> String {
+    let title = name.map_or(gid.to_string(), |name| format!("{gid} {name}"));
+    match character {
+        Some(c) if !c.is_control() && name != Some(c.to_string().as_str()) => format!("{title} ({c})"),
+        _ => title,
     }
 }
 

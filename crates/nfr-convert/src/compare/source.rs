@@ -62,6 +62,13 @@ impl SizedSource for UnhintedAt<'_> {
     }
 }
 
+/// Limits for a tool, which need not answer at once: one of the paper's networks may take its time.
+pub(super) fn patient() -> Limits {
+    let mut limits = Limits::default();
+    (limits.decoded_bytes, limits.work) = (1 << 30, u64::MAX);
+    limits
+}
+
 /// Models, decoded once for all sizes.
 pub struct Neural(BTreeMap<u16, Glyph>);
 
@@ -72,10 +79,7 @@ impl Neural {
     ///
     /// `MissingGlyph` for a glyph without a model, `Malformed` for a damaged one.
     pub fn new(font: &Font, gids: &[u16]) -> Result<Self, Error> {
-        // A tool need not answer at once: one of the paper's networks may take its time.
-        let mut limits = Limits::default();
-        (limits.decoded_bytes, limits.work) = (1 << 30, u64::MAX);
-        let mut decoder = Decoder::new(font, limits);
+        let mut decoder = Decoder::new(font, patient());
         let glyphs = gids.iter().map(|&gid| Ok((gid, decoder.glyph(gid.into())?)));
         Ok(Self(glyphs.collect::<Result<_, Error>>()?))
     }

@@ -28,6 +28,8 @@ pub(super) struct GlyphOutlines {
     unhinted: Outline,
     /// In pixels, at each size.
     hinted: Vec<Outline>,
+    /// Whether hinting changes the contours at any size, so that points do not correspond.
+    contours_change: bool,
 }
 
 /// Matches glyphs with parts.
@@ -70,8 +72,11 @@ impl<'t> PartMatcher<'t> {
     }
 
     pub(super) fn draw(&self, gid: u16) -> Result<GlyphOutlines, Error> {
+        let unhinted = self.unhinted(gid)?;
         let hinted = self.sizes.iter().map(|at| at.hinted_with_error(gid).map(|(outline, _)| outline));
-        Ok(GlyphOutlines { unhinted: self.unhinted(gid)?, hinted: hinted.collect::<Result<_, _>>()? })
+        let hinted = hinted.collect::<Result<Vec<_>, _>>()?;
+        let contours_change = !hinted.iter().all(|hinted| hinted.has_contours_of(&unhinted));
+        Ok(GlyphOutlines { unhinted, hinted, contours_change })
     }
 
     fn draw_part(&mut self, gid: u16) -> Result<Rc<GlyphOutlines>, Error> {
@@ -90,6 +95,9 @@ impl<'t> PartMatcher<'t> {
         components: &[u16],
     ) -> Result<Option<Vec<Part>>, Error> {
         let outlines = components.iter().map(|gid| self.draw_part(*gid)).collect::<Result<Vec<_>, _>>()?;
+        if whole.contours_change || outlines.iter().any(|part| part.contours_change) {
+            return Ok(None);
+        }
         let mut parts = Vec::with_capacity(components.len());
         let mut at = 0;
         for (gid, part) in components.iter().zip(&outlines) {

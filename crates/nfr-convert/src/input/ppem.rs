@@ -17,6 +17,15 @@ impl PpemList {
         &self.0
     }
 
+    /// The sizes of both lists.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let mut sizes = [&*self.0, &other.0].concat();
+        sizes.sort_unstable();
+        sizes.dedup();
+        Self(sizes)
+    }
+
     /// The list's ends and the step between its sizes, if that is the same throughout. It is 1 for one size.
     pub fn evenly_spaced(&self) -> Option<(RangeInclusive<u16>, u16)> {
         let (first, last) = (*self.0.first()?, *self.0.last()?);
@@ -122,6 +131,12 @@ mod tests {
         assert_eq!(spaced("8-13:2"), Some((8..=12, 2)));
         assert_eq!(spaced("12"), Some((12..=12, 1)));
         assert_eq!(spaced("8,9,11"), None);
+    }
+
+    #[test]
+    fn a_union_has_the_sizes_of_both_once() {
+        let [a, b] = ["8-10,20", "9-12"].map(|text| text.parse::<PpemList>().unwrap());
+        assert_eq!(a.union(&b).to_string(), "8-12,20");
     }
 
     #[test]

@@ -24,7 +24,9 @@ impl Fidelity {
         Self { error_per_bit: WORST * (BEST / WORST).powf(share) }
     }
 
-    /// Whether every point is where hinting puts it, at every size.
+    /// Whether every point is where hinting puts it, at every size: of outline models, at the sizes that the teacher draws. Fields,
+    /// predicted sizes and glyphs without a model are not exact; [`FontPair::verify`](crate::compare::fonts::FontPair::verify) tells of
+    /// them.
     pub fn is_exact(self) -> bool {
         self.error_per_bit == 0.0
     }

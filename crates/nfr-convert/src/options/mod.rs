@@ -21,10 +21,10 @@ pub use schedule::{Backend, Schedule};
 /// Where models have their shapes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Shape {
-    /// The outlines of the font where it keeps them, else fields.
+    /// The outlines of the font where it keeps them, else fields. Glyphs whose contours hinting changes get fields.
     #[default]
     Auto,
-    /// The outlines of the font.
+    /// The outlines of the font. Glyphs whose contours hinting changes are left without a model.
     Outline,
     /// Fields of their own, which are trained: it takes the feature `train`.
     Field,

@@ -1,8 +1,6 @@
 //! What hinting does to the points of `glyf`.
 
-use std::iter::once;
-
-use crate::error::Error;
+use crate::path_points::places;
 use crate::training_samples::GlyphSamples;
 use nfr::internals::model::outline::{OutlinePoints, scale_of};
 use nfr::internals::mul_fixed;
@@ -21,22 +19,18 @@ pub(crate) struct OutlineSamples {
 
 impl OutlineSamples {
     /// Finds the points of `glyf` in the paths that the teacher has drawn. `advance` is the glyph's advance width in font units.
-    ///
-    /// # Errors
-    ///
-    /// `Unsupported` if the paths are not those of the points.
+    /// None if the paths are not those of the points, at any size.
     pub(crate) fn new(
         samples: &GlyphSamples,
         points: OutlinePoints,
         advance: u16,
         units_per_em: u16,
-    ) -> Result<Self, Error> {
-        let places = places(&points, samples.outline.points.len()).ok_or_else(|| {
-            Error::Unsupported(format!(
-                "the contours of glyph {} are not drawn point by point; leave the glyph out",
-                samples.gid
-            ))
-        })?;
+    ) -> Option<Self> {
+        if samples.contours_change {
+            return None;
+        }
+        let contours: Vec<_> = points.contours().collect();
+        let places = places(&points.on_curve, &contours, samples.outline.points.len())?;
         let scales: Vec<i32> =
             samples.sizes.iter().map(|size| scale_of(size.ppem.into(), units_per_em)).collect();
         let mut hinted = [Vec::new(), Vec::new()];
@@ -55,7 +49,7 @@ impl OutlineSamples {
             let rounded = (mul_fixed(advance.into(), *scale) + 32) >> 6;
             size.advance.map_or(0, |hinted| (hinted - rounded).clamp(i8::MIN.into(), i8::MAX.into()) as i8)
         });
-        Ok(Self { advances: advances.collect(), points, scales, hinted })
+        Some(Self { advances: advances.collect(), points, scales, hinted })
     }
 
     /// The number of sizes.
@@ -73,52 +67,4 @@ impl OutlineSamples {
     pub(crate) fn hinted_at(&self, axis: usize, size: usize) -> &[i32] {
         &self.hinted[axis][size * self.points.len()..][..self.points.len()]
     }
-}
-
-/// For each point, its index among the points of the path; none for a point of a contour that is not drawn. `count` is the number
-/// of points in the path, which has implied points, too.
-fn places(points: &OutlinePoints, count: usize) -> Option<Vec<Option<usize>>> {
-    [1, 2, 3].into_iter().find_map(|least| {
-        let mut places = vec![None; points.len()];
-        let mut at = 0;
-        for contour in points.contours().filter(|contour| contour.len() >= least) {
-            for point in path(&points.on_curve[contour.clone()]) {
-                if let Some(point) = point {
-                    places[contour.start + point].get_or_insert(at);
-                }
-                at += 1;
-            }
-        }
-        (at == count).then_some(places)
-    })
-}
-
-/// The points of a contour in the order of its path; none for one that is implied.
-fn path(on_curve: &[bool]) -> Vec<Option<usize>> {
-    let count = on_curve.len();
-    let (start, order): (Option<usize>, Vec<usize>) = match on_curve {
-        [true, ..] => (Some(0), (1..count).collect()),
-        [.., true] => (Some(count - 1), (0..count - 1).collect()),
-        _ => (None, (0..count).collect()),
-    };
-    let mut path: Vec<Option<usize>> = once(start).collect();
-    let mut control = None;
-    for point in order {
-        match (control, on_curve[point]) {
-            (None, true) => path.push(Some(point)),
-            (Some(_), true) => {
-                path.extend([control, Some(point)]);
-                control = None;
-            }
-            (None, false) => control = Some(point),
-            (Some(_), false) => {
-                path.extend([control, None]);
-                control = Some(point);
-            }
-        }
-    }
-    if control.is_some() {
-        path.extend([control, start]);
-    }
-    path
 }

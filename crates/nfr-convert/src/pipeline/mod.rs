@@ -22,6 +22,7 @@ use crate::teacher::{Teacher, TeacherAt};
 use glyphs::Stages;
 use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
+use outlines::Learned;
 
 /// Converts a font: finds or trains a model for each glyph and writes a font that carries them instead of hints.
 ///
@@ -77,13 +78,23 @@ pub fn resume(
     glyphs.predict_part_offsets(&predictor, scale);
     let conversion =
         Stages { teacher: &teacher, sizes: &sizes, scale, predictor: &predictor, options, progress };
-    let (table, measured) = if options.uses_outlines() {
-        outlines::table(&conversion, &font, &header, &glyphs)?
+    let (table, measured, left_out) = if options.uses_outlines() {
+        let Learned { table, measured, left_out } =
+            outlines::learn(conversion, &font, partial, &header, &glyphs)?;
+        (table, measured, left_out)
     } else {
-        fields::table(conversion, partial, &header, &glyphs)?
+        let (table, measured) = fields::table(conversion, partial, &header, &glyphs)?;
+        (table, measured, Vec::new())
     };
+    if left_out.len() == options.gids.len() {
+        return Err(Error::Unsupported(
+            "hinting changes the contours of all selected glyphs, not only the positions of their points; train fields \
+             for them with --shape auto"
+                .into(),
+        ));
+    }
     let mut sums = Sums::default();
-    for gid in &options.gids {
+    for gid in options.gids.iter().filter(|gid| left_out.binary_search(gid).is_err()) {
         sums.merge(measured.get(gid).ok_or(Error::MissingGlyph(*gid))?);
     }
     let dropped = if options.drop_outlines { measured.keys().copied().collect() } else { BTreeSet::new() };
@@ -93,6 +104,7 @@ pub fn resume(
         glyphs: reports(&Table::parse(&table)?, &measured)?,
         sums,
         table_bytes: table.len(),
+        left_out,
     })
 }
 

@@ -1,18 +1,22 @@
-//! Outline models, which are found in closed form.
+//! Outline models, which are found in closed form. Glyphs that cannot have one get a field, or are left out.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use read_fonts::{FontRef, TableProvider};
+use skrifa::font::Font;
 
-use super::glyphs::Stages;
+use super::glyphs::{GlyphTrainer, Stages};
 use crate::compare::metrics::Sums;
+use crate::compare::report::glyph_count_text;
 use crate::compose::Decomposition;
 use crate::error::Error;
 use crate::input::open::owned;
-use crate::outline::{FittedOutline, OutlineSamples, encode, fit};
+use crate::options::{Options, Shape};
+use crate::outline::{EncodedOutlines, FittedOutline, OutlineSamples, encode, fit};
 use crate::parallel;
-use crate::writer::{OutlineTable, write_outlines};
+use crate::partial::Partial;
+use crate::writer::{GlyphModel, OutlineTable, write_outlines};
 use nfr::internals::model::compose::{Composed, Part, round_to_grid};
 use nfr::internals::model::gridfit::Scale;
 use nfr::internals::model::outline::{OutlineModel, OutlinePoints};
@@ -20,92 +24,166 @@ use nfr::internals::table::Header;
 use nfr::internals::table::outline::{Advances, scale_at};
 use nfr::internals::{Glyph, components, mul_fixed};
 
-/// A glyph's outline, and its advance width in font units.
-type Known = (OutlinePoints, u16);
+/// The most glyphs that one message lists.
+const GLYPHS_LISTED: usize = 5;
 
-/// The table, and the error of each glyph.
-pub(super) fn table(
-    stages: &Stages<'_>,
+/// A table of outline models.
+pub(super) struct Learned {
+    pub(super) table: Vec<u8>,
+    /// The error of each glyph.
+    pub(super) measured: BTreeMap<u16, Sums>,
+    /// The selected glyphs that have no model.
+    pub(super) left_out: Vec<u16>,
+}
+
+/// Finds the models, measures them and writes the table.
+pub(super) fn learn(
+    stages: Stages<'_>,
     font: &FontRef<'_>,
+    partial: Option<&Partial>,
     header: &Header,
     glyphs: &Decomposition,
-) -> Result<(Vec<u8>, BTreeMap<u16, Sums>), Error> {
+) -> Result<Learned, Error> {
+    let found = find(&stages, &owned(font)?, glyphs)?;
+    let mut measured = measure(&stages, &found)?;
+    let selected = |gid: &u16| stages.options.gids.binary_search(gid).is_ok();
+    let unfit: Vec<u16> = found.unfit.into_iter().filter(selected).collect();
+    let has_fields = trains_fields(stages.options);
+    warn_of_unfit(&stages, &unfit, has_fields);
+    let (fields, left_out) = if has_fields { (unfit, Vec::new()) } else { (Vec::new(), unfit) };
+    let trained = GlyphTrainer { stages, partial }.train_all(&fields)?;
+    measured.extend(trained.iter().map(|t| (t.gid, t.sums)));
+    let fields: Vec<GlyphModel> =
+        trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
+    let (loca, glyf) = (font.loca(None), font.glyf());
+    let known_parts = |gid: u16| components(loca.as_ref().ok()?, glyf.as_ref().ok()?, gid.into());
+    let (gids, encoded, composed) = (&found.gids, &found.encoded, &found.composed);
+    let table = OutlineTable { gids, encoded, composed, fields: &fields, scale: stages.scale };
+    Ok(Learned { table: write_outlines(header, &table, known_parts)?, measured, left_out })
+}
+
+/// The outline models of a font.
+struct Found {
+    /// The glyphs that have a model of their own, ascending.
+    gids: Vec<u16>,
+    models: BTreeMap<u16, Arc<OutlineModel>>,
+    encoded: EncodedOutlines,
+    composed: Vec<(Composed, Advances)>,
+    /// The glyphs that cannot have an outline model, ascending: hinting changes their contours, or they are not drawn point by
+    /// point.
+    unfit: Vec<u16>,
+}
+
+fn find(stages: &Stages<'_>, font: &Font, glyphs: &Decomposition) -> Result<Found, Error> {
     let (scale, options) = (stages.scale, stages.options);
-    let known = glyphs.modelled.iter().map(|gid| known(font, *gid)).collect::<Result<Vec<Known>, _>>()?;
-    let work: Vec<(&u16, &Known)> = glyphs.modelled.iter().zip(&known).collect();
-    let fitted = parallel::map(&work, options.jobs, |(gid, (points, advance))| {
-        let samples = stages.samples(**gid)?;
-        let samples = OutlineSamples::new(&samples, points.clone(), *advance, scale.units_per_em())?;
-        let outline = fit(&samples, scale.units_per_em(), options.fidelity);
-        Ok(((samples, *advance), outline))
+    let fitted = parallel::map(&glyphs.modelled, options.jobs, |gid| {
+        let samples = outline_samples(stages, font, *gid)?;
+        Ok(samples.map(|(samples, advance)| {
+            let outline = fit(&samples, scale.units_per_em(), options.fidelity);
+            ((samples, advance), outline)
+        }))
     })?;
-    let (samples, mut outlines): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
+    let (fit, mut unfit): (Vec<_>, Vec<_>) =
+        glyphs.modelled.iter().copied().zip(fitted).partition(|(_, fitted)| fitted.is_some());
+    let gids: Vec<u16> = fit.iter().map(|(gid, _)| *gid).collect();
+    let (samples, mut outlines): (Vec<_>, Vec<_>) = fit.into_iter().filter_map(|(_, fitted)| fitted).unzip();
     let encoded = encode(&samples, &mut outlines, scale, options.fidelity, options.jobs)?;
     let mut models = BTreeMap::new();
-    for ((gid, (points, _)), FittedOutline { weights, .. }) in glyphs.modelled.iter().zip(known).zip(outlines)
-    {
-        models.insert(*gid, Arc::new(OutlineModel::new(points, weights, scale, scale.sizes())?));
+    for ((gid, (samples, _)), FittedOutline { weights, .. }) in gids.iter().zip(samples).zip(outlines) {
+        models.insert(*gid, Arc::new(OutlineModel::new(samples.points, weights, scale, scale.sizes())?));
     }
-    let composed: Vec<Composed> =
-        glyphs.composed.iter().map(|glyph| from_scaled_offsets(glyph, scale)).collect();
-    let own = models.iter().map(|(gid, model)| (*gid, vec![(model.clone(), Part::default())]));
-    let placed = composed.iter().map(|glyph| {
+    let mut composed = Vec::new();
+    for glyph in &glyphs.composed {
+        match advances(stages, font, glyph, &models)? {
+            Some(advances) => composed.push((from_scaled_offsets(glyph, scale), advances)),
+            None => unfit.push((glyph.gid, None)),
+        }
+    }
+    let mut unfit: Vec<u16> = unfit.into_iter().map(|(gid, _)| gid).collect();
+    unfit.sort_unstable();
+    Ok(Found { gids, models, encoded, composed, unfit })
+}
+
+/// Draws all glyphs that have outline models, and compares them with the teacher.
+fn measure(stages: &Stages<'_>, found: &Found) -> Result<BTreeMap<u16, Sums>, Error> {
+    let own = found.models.iter().map(|(gid, model)| Ok((*gid, vec![(model.clone(), Part::default())])));
+    let placed = found.composed.iter().map(|(glyph, _)| {
         let parts = glyph.parts.iter().map(|part| {
-            let model = models.get(&part.gid).ok_or(Error::MissingGlyph(part.gid))?;
+            let model = found.models.get(&part.gid).ok_or(Error::MissingGlyph(part.gid))?;
             Ok((model.clone(), part.clone()))
         });
         Ok((glyph.gid, parts.collect::<Result<Vec<_>, Error>>()?))
     });
-    let drawn = own.map(Ok).chain(placed).collect::<Result<Vec<_>, Error>>()?;
-    let measured = parallel::map(&drawn, options.jobs, |(gid, parts)| {
+    let drawn = own.chain(placed).collect::<Result<Vec<_>, Error>>()?;
+    let measured = parallel::map(&drawn, stages.options.jobs, |(gid, parts)| {
         Ok((*gid, stages.measure(&stages.samples(*gid)?, &Glyph::of_outlines(parts.clone()))?))
     })?;
-    let composed: Vec<(Composed, Advances)> = composed
-        .into_iter()
-        .map(|glyph| {
-            let advances = advances(stages, font, &glyph, &models)?;
-            Ok((glyph, advances))
-        })
-        .collect::<Result<_, Error>>()?;
-    let (loca, glyf) = (font.loca(None), font.glyf());
-    let known_parts = |gid: u16| components(loca.as_ref().ok()?, glyf.as_ref().ok()?, gid.into());
-    let table = OutlineTable { gids: &glyphs.modelled, encoded: &encoded, composed: &composed };
-    Ok((write_outlines(header, &table, known_parts)?, measured.into_iter().collect()))
+    Ok(measured.into_iter().collect())
 }
 
-/// The hinted advance widths of a composed glyph.
+/// Whether glyphs that cannot have an outline model get fields.
+fn trains_fields(options: &Options) -> bool {
+    options.shape == Shape::Auto
+}
+
+/// Says which glyphs cannot have an outline model, and what they have instead.
+fn warn_of_unfit(stages: &Stages<'_>, unfit: &[u16], has_fields: bool) {
+    if unfit.is_empty() {
+        return;
+    }
+    let listed: Vec<String> = unfit.iter().take(GLYPHS_LISTED).map(u16::to_string).collect();
+    let more = unfit.len().saturating_sub(GLYPHS_LISTED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let count = glyph_count_text(unfit.len());
+    let instead = if has_fields {
+        "trained fields draw them"
+    } else {
+        "they are left without a model; --shape auto trains fields for them"
+    };
+    stages.progress.warn(&format!(
+        "hinting changes the contours of {count} ({}{more}), not only the positions of points; {instead}",
+        listed.join(", ")
+    ));
+}
+
+/// The hinted advance widths of a composed glyph; none if it cannot be composed of outline models.
 fn advances(
     stages: &Stages<'_>,
-    font: &FontRef<'_>,
+    font: &Font,
     glyph: &Composed,
     models: &BTreeMap<u16, Arc<OutlineModel>>,
-) -> Result<Advances, Error> {
-    let (points, advance) = known(font, glyph.gid)?;
-    let samples =
-        OutlineSamples::new(&stages.samples(glyph.gid)?, points, advance, stages.scale.units_per_em())?;
+) -> Result<Option<Advances>, Error> {
+    if !glyph.parts.iter().all(|part| models.contains_key(&part.gid)) {
+        return Ok(None);
+    }
+    let Some((samples, _)) = outline_samples(stages, font, glyph.gid)? else { return Ok(None) };
     let of_first =
         glyph.parts.first().and_then(|part| models.get(&part.gid)).map(|model| &model.weights.advances);
-    Ok(if samples.advances.iter().all(|advance| *advance == 0) {
+    Ok(Some(if samples.advances.iter().all(|advance| *advance == 0) {
         Advances::Rounded
     } else if of_first == Some(&samples.advances) {
         Advances::OfFirstPart
     } else {
         Advances::Own(samples.advances)
-    })
+    }))
 }
 
-fn known(font: &FontRef<'_>, gid: u16) -> Result<Known, Error> {
-    let mut points = OutlinePoints::default();
-    let owned = owned(font)?;
-    let outline = owned.outline_glyphs().get(gid.into());
+/// A glyph's points with their hinted positions, and its advance width in font units; none if it cannot have an outline model.
+fn outline_samples(
+    stages: &Stages<'_>,
+    font: &Font,
+    gid: u16,
+) -> Result<Option<(OutlineSamples, u16)>, Error> {
     let unreadable = || Error::from(nfr::Error::MalformedOutline(gid.into()));
-    let outline = outline.ok_or_else(unreadable)?;
+    let mut points = OutlinePoints::default();
+    let outline = font.outline_glyphs().get(gid.into()).ok_or_else(unreadable)?;
     outline.draw_unscaled(skrifa::DrawMemory::Scratch, &mut points).map_err(|_| unreadable())?;
     if points.is_unfit {
         return Err(unreadable());
     }
-    let advance = owned.glyph_metrics().h_advance(gid.into());
-    Ok((points, advance.clamp(0.0, f32::from(u16::MAX)) as u16))
+    let advance = font.glyph_metrics().h_advance(gid.into()).clamp(0.0, f32::from(u16::MAX)) as u16;
+    let samples = OutlineSamples::new(&stages.samples(gid)?, points, advance, stages.scale.units_per_em());
+    Ok(samples.map(|samples| (samples, advance)))
 }
 
 /// The same parts with grid offsets that count from the offsets as FreeType scales and rounds them.

@@ -36,13 +36,13 @@ impl Predictor {
         let wanted: Vec<u16> = all.filter(|ppem| !known.contains(ppem)).collect();
         let mut counts = [TrackCounts::default(), TrackCounts::default()];
         for gid in if wanted.is_empty() { &[] } else { gids } {
-            let unhinted = teacher.unhinted_em(*gid)?.points;
-            let hinted = sizes.iter().map(|at| Ok(at.hinted_with_error(*gid)?.0.points));
+            let unhinted = teacher.unhinted_em(*gid)?;
+            let hinted = sizes.iter().map(|at| Ok(at.hinted_with_error(*gid)?.0));
             let hinted = hinted.collect::<Result<Vec<_>, Error>>()?;
-            // Drawing the training samples refuses glyphs whose number of points changes.
-            if hinted.iter().all(|points| points.len() == unhinted.len()) {
-                let hinted: Vec<&[[f32; 2]]> = hinted.iter().map(Vec::as_slice).collect();
-                for (counts, axis) in counts.iter_mut().zip(axes(&unhinted, &hinted)) {
+            if hinted.iter().all(|outline| outline.has_contours_of(&unhinted)) {
+                let hinted: Vec<&[[f32; 2]]> =
+                    hinted.iter().map(|outline| outline.points.as_slice()).collect();
+                for (counts, axis) in counts.iter_mut().zip(axes(&unhinted.points, &hinted)) {
                     counts.add(&axis.tracks);
                 }
             }

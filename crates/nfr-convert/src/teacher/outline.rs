@@ -1,5 +1,7 @@
 //! The teacher's outlines, filled with exact area coverage by zeno. The renderer has outlines of its own.
 
+use std::mem::discriminant;
+
 use skrifa::PathSink;
 use zeno::{Command, Mask, Origin, PathBuilder, Vector};
 
@@ -19,7 +21,7 @@ const MAX_REACH: f32 = (1 << 16) as f32;
 pub struct Outline {
     commands: Vec<Command>,
     /// All points of the outline's commands, in order. Hinting moves points and never reorders them, so that hinted and
-    /// unhinted outlines correspond index by index.
+    /// unhinted outlines correspond index by index, unless hinting changes the contours ([`Self::has_contours_of`]).
     pub points: Vec<[f32; 2]>,
     /// The advance width in the same unit, hinted if the points are.
     pub advance: Option<f32>,
@@ -63,6 +65,13 @@ impl Outline {
             })
             .collect();
         Ok(Self { commands, points: points.to_vec(), advance: self.advance })
+    }
+
+    /// Whether another outline has the same contours but for its points' positions. A hint program can put a control point on the
+    /// curve or take a point off it (`FLIPPT`, `FLIPRGON`, `FLIPRGOFF`); points do not correspond then.
+    pub fn has_contours_of(&self, other: &Self) -> bool {
+        self.commands.len() == other.commands.len()
+            && self.commands.iter().zip(&other.commands).all(|(a, b)| discriminant(a) == discriminant(b))
     }
 
     fn map(&mut self, to: impl Fn([f32; 2]) -> [f32; 2]) {

@@ -134,7 +134,8 @@ fn an_outline_without_height_is_trained_too() {
         }
     };
     let sizes = vec![hinted(8), hinted(9)];
-    let samples = GlyphSamples { gid: 1, outline: outline.clone(), hint_error: None, sizes };
+    let samples =
+        GlyphSamples { gid: 1, outline: outline.clone(), hint_error: None, contours_change: false, sizes };
     let parameters = trained(&[samples], scale, Target::Smooth, 3);
     assert_eq!(parameters[0].knots[1], [250]);
 }

@@ -3,16 +3,17 @@
 use std::collections::{BTreeMap, HashMap};
 
 use nfr::internals::model::compose::{Composed, Part};
+use nfr::internals::model::gridfit::Scale;
 use nfr::internals::table::outline::{
     Advances, StoredGlyph, StoredPart, encode_list, encode_parts, pack, plain_parts,
 };
 use nfr::internals::table::{HEADER_LEN, Header, OUTLINE_MODELS};
 
-use super::{FLAGS_AT, put_header};
+use super::{FLAGS_AT, GlyphModel, put_header, write};
 use crate::error::Error;
 use crate::outline::EncodedOutlines;
 
-/// The outline models of a font.
+/// The outline models of a font, and the fields of glyphs that cannot have one.
 pub(crate) struct OutlineTable<'t> {
     /// The glyphs that have hints, ascending.
     pub(crate) gids: &'t [u16],
@@ -20,9 +21,13 @@ pub(crate) struct OutlineTable<'t> {
     pub(crate) encoded: &'t EncodedOutlines,
     /// Composed glyphs, ascending, with their hinted advance widths.
     pub(crate) composed: &'t [(Composed, Advances)],
+    /// Fields of other glyphs, ascending.
+    pub(crate) fields: &'t [GlyphModel],
+    /// The sizes of the models.
+    pub(crate) scale: Scale,
 }
 
-/// Writes a table of outline models. `known` gives the parts of a composite glyph of `glyf`.
+/// Writes a table of outline models and fields. `known` gives the parts of a composite glyph of `glyf`.
 pub(crate) fn write_outlines(
     header: &Header,
     table: &OutlineTable<'_>,
@@ -47,9 +52,14 @@ pub(crate) fn write_outlines(
     let too_large =
         || Error::LimitExceeded("outline models that are too large to store; convert fewer sizes".into());
     let (blocks, payload) = pack(&messages).ok_or_else(too_large)?;
-    let mut out = Vec::with_capacity(HEADER_LEN + 6 + payload.len());
-    put_header(&mut out, header, 0, 0);
-    out.resize(HEADER_LEN, 0);
+    let mut out = if table.fields.is_empty() {
+        let mut out = Vec::with_capacity(HEADER_LEN + 6 + payload.len());
+        put_header(&mut out, header, 0, 0);
+        out.resize(HEADER_LEN, 0);
+        out
+    } else {
+        write(header, table.fields, &[], &[], table.scale)?.0
+    };
     out[FLAGS_AT] |= OUTLINE_MODELS;
     let ranges = ranges(glyphs.keys().copied());
     for count in [ranges.len(), shared[0].len(), shared[1].len(), lists.messages.len()] {

@@ -1,11 +1,11 @@
-//! Draws, compares, describes and times neural fonts.
+//! Draws, compares, verifies, describes and times neural fonts.
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use nfr_tools as cli;
 
-/// Draws, compares, describes and times neural fonts
+/// Draws, compares, verifies, describes and times neural fonts
 #[derive(Debug, Parser)]
 #[command(name = "nfr", version)]
 struct Args {
@@ -17,6 +17,7 @@ struct Args {
 enum Command {
     Render(cli::render::Args),
     Diff(cli::diff::Args),
+    Verify(cli::verify::Args),
     Info(cli::info::Args),
     Bench(cli::bench::Args),
     Lab(cli::lab::Args),
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
     cli::finish(match Args::parse().command {
         Command::Render(args) => cli::render::run(&args),
         Command::Diff(args) => cli::diff::run(&args),
+        Command::Verify(args) => cli::verify::run(&args),
         Command::Info(args) => cli::info::run(&args),
         Command::Bench(args) => cli::bench::run(&args),
         Command::Lab(args) => cli::lab::run(&args),
