@@ -11,15 +11,18 @@ pub struct Fidelity {
 /// Below this price of a bit, moves that differ at all are different.
 const FINE: f64 = 0.01;
 /// The error that may be added to save one bit, in pixels of full coverage, at the qualities 0 and 100.
-const WORST: f64 = 0.04;
-const BEST: f64 = 0.002;
+const WORST: f64 = 0.03;
+const BEST: f64 = 0.001;
 
 impl Fidelity {
+    /// That of quality 100.
+    pub(crate) const EXACT: Self = Self { error_per_bit: 0.0 };
+
     /// That of a quality. 100 is exact.
     pub fn new(quality: Quality) -> Self {
         let share = quality.share();
         if share >= 1.0 {
-            return Self { error_per_bit: 0.0 };
+            return Self::EXACT;
         }
         Self { error_per_bit: WORST * (BEST / WORST).powf(share) }
     }

@@ -50,6 +50,11 @@ impl<'s> Distortion<'s> {
         (0..self.samples.sizes()).map(|size| self.at(contour, size, hints, None)).sum()
     }
 
+    /// The error of all contours over all sizes, in pixels.
+    pub(super) fn of_all(&self, hints: &AxisHints) -> f64 {
+        (0..self.contour_count()).map(|contour| self.of_contour(contour, hints)).sum()
+    }
+
     /// The error of a contour at a size; `moved` is a track, and how much farther it is moved.
     fn at(&self, contour: usize, size: usize, hints: &AxisHints, moved: Option<(usize, i16)>) -> f64 {
         let range = self.contours[contour].clone();
@@ -61,6 +66,9 @@ impl<'s> Distortion<'s> {
         }
         if !moves.is_empty() {
             move_contour(units, range.clone(), &hints.track_of, &moves, &mut places);
+        }
+        for correction in hints.corrections_at(size) {
+            places[usize::from(correction.point)] += i32::from(correction.by);
         }
         let pixels = f64::from(self.samples.scales[size]) / (65536.0 * 64.0);
         let hinted = self.samples.hinted_at(self.axis, size);

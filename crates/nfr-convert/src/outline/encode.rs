@@ -1,10 +1,11 @@
 //! Encoding all outline models of a font.
 
 use nfr::internals::model::gridfit::Scale;
+use nfr::internals::model::outline::OutlineWeights;
 use nfr::internals::table::BigEndian;
 use nfr::internals::table::outline::{self, Known, Question, Shared, Sources};
 
-use super::fit::{FittedOutline, add_corrections};
+use super::fit::{FittedOutline, add_corrections, error, fit};
 use super::samples::OutlineSamples;
 use super::sharing::{SharedTracks, tracks};
 use crate::error::Error;
@@ -32,6 +33,7 @@ pub(crate) fn encode(
     jobs: usize,
 ) -> Result<EncodedOutlines, Error> {
     let shared = [0, 1].map(|axis| SharedTracks::find(outlines, axis, fidelity));
+    let units_per_em = scale.units_per_em();
     let levels = shared.each_ref().map(|tracks| {
         tracks.0.iter().map(|track| BigEndian::from(track.level)).collect::<Vec<BigEndian<i16>>>()
     });
@@ -45,21 +47,23 @@ pub(crate) fn encode(
             scale,
             shared: Shared { levels: [&levels[0], &levels[1]], moves: &moves },
         };
-        let sources: Sources = [0, 1].map(|axis| {
-            let tracks = tracks(outline, axis);
-            tracks.map(|track| shared[axis].source(&track, scale.units_per_em(), fidelity)).collect()
-        });
-        let mut weights = outline.weights.clone();
-        let costs = &outline.costs;
-        let bytes = outline::encode(&known, &mut weights, &sources, &mut |question| {
-            choose(question, costs[question.axis][question.track][question.size], fidelity)
-        })?;
-        add_corrections(&mut weights, samples, scale.units_per_em(), fidelity);
-        if weights.axes.iter().all(|hints| hints.corrections.is_empty()) {
-            return Ok((bytes, weights));
+        let encoded = |outline: &FittedOutline| {
+            let sources: Sources = [0, 1].map(|axis| {
+                let tracks = tracks(outline, axis);
+                tracks.map(|track| shared[axis].source(&track, units_per_em, fidelity)).collect()
+            });
+            encode_glyph(&known, samples, outline, &sources, fidelity)
+        };
+        let own = encoded(outline)?;
+        if fidelity.is_exact() {
+            return Ok(own);
         }
-        let bytes = outline::encode(&known, &mut weights, &sources, &mut |question| question.wanted.into())?;
-        Ok((bytes, weights))
+        // More tracks can take fewer bits than the corrections that they make needless.
+        let exact = encoded(&fit(samples, units_per_em, Fidelity::EXACT))?;
+        let total = |(bytes, weights): &(Vec<u8>, OutlineWeights)| {
+            error(weights, samples, units_per_em) + fidelity.error_per_bit() * 8.0 * bytes.len() as f64
+        };
+        Ok(if total(&exact) < total(&own) { exact } else { own })
     })?;
     let mut messages = Vec::with_capacity(encoded.len());
     for (outline, (bytes, weights)) in outlines.iter_mut().zip(encoded) {
@@ -72,6 +76,27 @@ pub(crate) fn encode(
         tracks.0.into_iter().map(message).collect()
     });
     Ok(EncodedOutlines { glyphs: messages, shared })
+}
+
+/// A glyph's message, and the weights that it has.
+fn encode_glyph(
+    known: &Known<'_>,
+    samples: &OutlineSamples,
+    outline: &FittedOutline,
+    sources: &Sources,
+    fidelity: Fidelity,
+) -> Result<(Vec<u8>, OutlineWeights), Error> {
+    let mut weights = outline.weights.clone();
+    let costs = &outline.costs;
+    let bytes = outline::encode(known, &mut weights, sources, &mut |question| {
+        choose(question, costs[question.axis][question.track][question.size], fidelity)
+    })?;
+    add_corrections(&mut weights, samples, known.scale.units_per_em(), fidelity);
+    if weights.axes.iter().all(|hints| hints.corrections.is_empty()) {
+        return Ok((bytes, weights));
+    }
+    let bytes = outline::encode(known, &mut weights, sources, &mut |question| question.wanted.into())?;
+    Ok((bytes, weights))
 }
 
 /// The move with the least sum of error and bits: the wanted one, or a candidate near it. `cost` is the error, in pixels, of

@@ -38,6 +38,12 @@ pub(super) fn add_corrections(
     }
 }
 
+/// The error of hints over all sizes, in pixels of full coverage.
+pub(super) fn error(weights: &OutlineWeights, samples: &OutlineSamples, units_per_em: u16) -> f64 {
+    let axes = weights.axes.iter().enumerate();
+    axes.map(|(axis, hints)| Distortion::new(samples, axis, units_per_em).of_all(hints)).sum()
+}
+
 /// Points that one track could move.
 struct Cluster {
     level: i16,
