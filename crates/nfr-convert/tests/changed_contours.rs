@@ -122,3 +122,14 @@ fn fields_are_trained_for_them_when_fields_are_asked_for() {
     let (conversion, warnings) = converted(&data, &options(&data, "eé", Shape::Field));
     assert_eq!((conversion.glyphs.len(), warnings), (2, Vec::new()));
 }
+
+#[cfg(not(feature = "train"))]
+#[test]
+fn a_build_without_training_leaves_them_out_and_says_how_to_get_fields() {
+    let data = flipped();
+    let mut options = options(&data, "aeo", Shape::Auto);
+    options.schedule.steps = 1;
+    let (conversion, warnings) = converted(&data, &options);
+    assert_eq!(conversion.left_out, gids(&data, "e"));
+    assert!(warnings.len() == 1 && warnings[0].contains("built with --features train"), "{warnings:?}");
+}

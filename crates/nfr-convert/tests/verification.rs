@@ -43,6 +43,8 @@ fn at_quality_100_every_point_and_advance_width_is_equal() {
             // 57 sizes, and more than ten points a glyph.
             assert_eq!(found.totals.glyph_sizes, 57 * options.gids.len() as u64);
             assert_eq!(found.totals.advances, found.totals.glyph_sizes);
+            // A blank has none.
+            assert_eq!(found.totals.bearings, found.totals.glyph_sizes - 57);
             assert!(found.totals.points > 10 * found.totals.glyph_sizes && found.not_compared.is_empty());
         }
     }

@@ -34,7 +34,7 @@ pub(super) fn exceptions(
     let reasons = [
         (predicted, "whose hinting is predicted from other sizes".to_owned()),
         (outside, format!("outside of the trained {first}-{last} ppem, where plain outlines are drawn")),
-        (others, "with points or advance widths beyond what models hold".to_owned()),
+        (others, "with points or metrics beyond what models hold".to_owned()),
     ];
     for (count, why) in reasons.into_iter().filter(|(count, _)| *count > 0) {
         exceptions.push(format!("{count} size{} {why}", if count == 1 { "" } else { "s" }));

@@ -10,11 +10,11 @@ use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::open::{has_models, open};
 use nfr_convert::ppem::PpemList;
 
-/// Proves what a neural font keeps: compares hinted points and advance widths with those of the original
+/// Proves what a neural font keeps: compares hinted points, advance widths and side bearings with the original's
 ///
 /// Every point, on the curve or off it, is compared along x and y in 1/64 pixel with where skrifa's interpreter puts it, with the
-/// settings that the font was converted with. Exits with 0 if everything is equal, with 1 if a point or an advance width differs or
-/// a glyph cannot be compared, and with 2 if an error keeps it from comparing.
+/// settings that the font was converted with. Exits with 0 if everything is equal, with 1 if something differs or a glyph cannot be
+/// compared, and with 2 if an error keeps it from comparing.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The hinted font
@@ -32,7 +32,8 @@ pub struct Args {
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
-    /// Accept points that are off by so much along x or y, in 1/64 pixel; advance widths must be equal all the same
+    /// Accept points that are off by so much along x or y, in 1/64 pixel, and side bearings; advance widths must be
+    /// equal all the same
     #[arg(long, value_name = "N", default_value_t = 0)]
     at_most: u32,
     /// Print one JSON object

@@ -155,8 +155,8 @@ impl<'a> FontPair<'a> {
         Ok(Report::new(header, &tallies, self.labels()?))
     }
 
-    /// Compares the hinted points and advance widths of glyphs at sizes with those of the original. `names` are the two files'
-    /// paths, original first. Glyphs that have no points are told.
+    /// Compares the hinted points, advance widths and left side bearings of glyphs at sizes with those of the original. `names` are
+    /// the two files' paths, original first. Glyphs that have no points are told.
     ///
     /// # Errors
     ///

@@ -21,12 +21,16 @@ pub struct PointTally {
     pub points: u64,
     /// Points that differ along x or y.
     pub differing_points: u64,
-    /// The largest difference of a point along x or y, in 1/64 pixel.
+    /// The largest difference of a point along x or y, or of a side bearing, in 1/64 pixel.
     pub largest_difference: u32,
     /// Hinted advance widths.
     pub advances: u64,
     /// Hinted advance widths that differ.
     pub differing_advances: u64,
+    /// Hinted left side bearings, of glyphs that have points.
+    pub bearings: u64,
+    /// Hinted left side bearings that differ.
+    pub differing_bearings: u64,
 }
 
 impl PointTally {
@@ -40,11 +44,14 @@ impl PointTally {
         self.largest_difference = self.largest_difference.max(other.largest_difference);
         self.advances += other.advances;
         self.differing_advances += other.differing_advances;
+        self.bearings += other.bearings;
+        self.differing_bearings += other.differing_bearings;
     }
 
-    /// Whether all points and advance widths are equal.
+    /// Whether all points, advance widths and side bearings are equal.
     pub fn is_equal(&self) -> bool {
-        self.equal_glyph_sizes == self.glyph_sizes && self.differing_advances == 0
+        let differing = self.differing_advances + self.differing_bearings;
+        self.equal_glyph_sizes == self.glyph_sizes && differing == 0
     }
 }
 
@@ -84,6 +91,12 @@ impl Compared<'_> {
                 tally.advances = 1;
                 let differs = in_64ths(advance) != in_64ths(rasterizer.hinted_advance(gid.into(), ppem)?);
                 tally.differing_advances = differs.into();
+            }
+            if let Some(left) = hinted.points.iter().map(|point| in_64ths(point[0])).min() {
+                let bearing = in_64ths(rasterizer.hinted_side_bearing(gid.into(), ppem)?);
+                tally.bearings = 1;
+                tally.differing_bearings = (left != bearing).into();
+                tally.largest_difference = tally.largest_difference.max(left.abs_diff(bearing));
             }
             sizes.push((at.ppem(), tally));
         }

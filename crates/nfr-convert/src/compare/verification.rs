@@ -1,4 +1,5 @@
-//! The result of a verification: which hinted points and advance widths a neural font keeps.
+//! The result of a verification: which hinted points, advance widths and side bearings a neural font
+//! keeps.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -69,7 +70,7 @@ pub struct GlyphPoints {
     pub name: Option<String>,
     /// The first character that stands for it.
     pub character: Option<char>,
-    /// The smallest size that has its largest difference, or where contours or advance widths alone differ, the first such size; none
+    /// The smallest size that has its largest difference, or where contours or metrics alone differ, the first such size; none
     /// if all is equal.
     pub worst_ppem: Option<u16>,
     /// What differs.
@@ -87,7 +88,8 @@ pub struct SizePoints {
     pub tally: PointTally,
 }
 
-/// A verification: hinted points and advance widths of a neural font against those of the interpreter.
+/// A verification: hinted points, advance widths and left side bearings of a neural font against those of the
+/// interpreter.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Verification {
     /// What is compared.
@@ -128,26 +130,29 @@ impl Verification {
             by_glyph.push(GlyphPoints { gid: glyph.gid, name, character, worst_ppem, tally: all });
         }
         let badness = |glyph: &GlyphPoints| {
-            let PointTally {
-                largest_difference, differing_points, changed_contours, differing_advances, ..
-            } = glyph.tally;
-            [changed_contours, largest_difference.into(), differing_points, differing_advances]
+            let PointTally { largest_difference, differing_points, changed_contours, .. } = glyph.tally;
+            let metrics = glyph.tally.differing_advances + glyph.tally.differing_bearings;
+            [changed_contours, largest_difference.into(), differing_points, metrics]
         };
         by_glyph.sort_by(|a, b| badness(b).cmp(&badness(a)).then(a.gid.cmp(&b.gid)));
         let by_ppem = by_ppem.into_iter().map(|(ppem, tally)| SizePoints { ppem, tally }).collect();
         Self { subject, totals, not_compared, by_ppem, by_glyph }
     }
 
-    /// A line for each kind of thing that is not equal: none if every glyph was compared, no point is off by more than `at_most`
-    /// 1/64 pixel along x or y, and all advance widths are equal.
+    /// A line for each kind of thing that is not equal: none if every glyph was compared, no point or side bearing is off by more than
+    /// `at_most` 1/64 pixel along x or y, and all advance widths are equal.
     pub fn failures(&self, at_most: u32) -> Vec<String> {
         let totals = &self.totals;
         let mut failures = Vec::new();
-        if totals.largest_difference > at_most {
-            failures.push(format!(
-                "{} of {} points differ, by up to {}/64 pixel",
-                totals.differing_points, totals.points, totals.largest_difference
-            ));
+        let counts = [
+            (totals.differing_points, totals.points, "points"),
+            (totals.differing_bearings, totals.bearings, "left side bearings"),
+        ];
+        let largest = totals.largest_difference;
+        for (differing, all, what) in counts {
+            if differing > 0 && largest > at_most {
+                failures.push(format!("{differing} of {all} {what} differ, by up to {largest}/64 pixel"));
+            }
         }
         if totals.changed_contours > 0 {
             failures.push(format!("hinting changes the contours at {} glyph sizes", totals.changed_contours));
@@ -189,6 +194,7 @@ impl fmt::Display for Verification {
             )?;
         }
         writeln!(f, "advances      {} compared, {} differ", totals.advances, totals.differing_advances)?;
+        writeln!(f, "bearings      {} compared, {} differ", totals.bearings, totals.differing_bearings)?;
         for (reason, count) in self.reasons() {
             writeln!(f, "not compared  {} {reason}", glyph_count_text(count))?;
         }

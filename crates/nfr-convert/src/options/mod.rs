@@ -21,7 +21,8 @@ pub use schedule::{Backend, Schedule};
 /// Where models have their shapes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Shape {
-    /// The outlines of the font where it keeps them, else fields. Glyphs whose contours hinting changes get fields.
+    /// The outlines of the font where it keeps them, else fields. Glyphs whose contours hinting changes get fields;
+    /// without the feature `train` they are left without a model.
     #[default]
     Auto,
     /// The outlines of the font. Glyphs whose contours hinting changes are left without a model.

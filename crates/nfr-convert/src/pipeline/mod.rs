@@ -87,11 +87,10 @@ pub fn resume(
         (table, measured, Vec::new())
     };
     if left_out.len() == options.gids.len() {
-        return Err(Error::Unsupported(
-            "hinting changes the contours of all selected glyphs, not only the positions of their points; train fields \
-             for them with --shape auto"
-                .into(),
-        ));
+        return Err(Error::Unsupported(format!(
+            "hinting changes the contours of all selected glyphs, not only the positions of their points; {}",
+            training::ADVICE
+        )));
     }
     let mut sums = Sums::default();
     for gid in options.gids.iter().filter(|gid| left_out.binary_search(gid).is_err()) {

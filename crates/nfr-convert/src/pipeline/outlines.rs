@@ -7,6 +7,7 @@ use read_fonts::{FontRef, TableProvider};
 use skrifa::font::Font;
 
 use super::glyphs::{GlyphTrainer, Stages};
+use super::training;
 use crate::compare::metrics::Sums;
 use crate::compare::report::glyph_count_text;
 use crate::compose::Decomposition;
@@ -123,7 +124,7 @@ fn measure(stages: &Stages<'_>, found: &Found) -> Result<BTreeMap<u16, Sums>, Er
 
 /// Whether glyphs that cannot have an outline model get fields.
 fn trains_fields(options: &Options) -> bool {
-    options.shape == Shape::Auto
+    options.shape == Shape::Auto && training::is_possible(options)
 }
 
 /// Says which glyphs cannot have an outline model, and what they have instead.
@@ -136,9 +137,9 @@ fn warn_of_unfit(stages: &Stages<'_>, unfit: &[u16], has_fields: bool) {
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     let count = glyph_count_text(unfit.len());
     let instead = if has_fields {
-        "trained fields draw them"
+        "trained fields draw them".to_owned()
     } else {
-        "they are left without a model; --shape auto trains fields for them"
+        format!("they are left without a model; {}", training::ADVICE)
     };
     stages.progress.warn(&format!(
         "hinting changes the contours of {count} ({}{more}), not only the positions of points; {instead}",

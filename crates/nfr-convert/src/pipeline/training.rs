@@ -6,9 +6,21 @@ use crate::options::{Options, Shape};
 use crate::training_samples::GlyphSamples;
 use nfr::internals::model::gridfit::Scale;
 
+/// How glyphs that cannot have an outline model get a field.
+pub(super) const ADVICE: &str = if cfg!(feature = "train") {
+    "--shape auto trains fields for them"
+} else {
+    "--shape auto trains fields for them in a program that is built with --features train"
+};
+
+/// Whether this build can train what the options ask for.
+pub(super) fn is_possible(options: &Options) -> bool {
+    cfg!(feature = "train") || options.schedule.steps == 0
+}
+
 /// Fails if the options ask for training and this build has none.
 pub(super) fn check(gid: u16, options: &Options) -> Result<(), Error> {
-    if cfg!(feature = "train") || options.schedule.steps == 0 {
+    if is_possible(options) {
         return Ok(());
     }
     Err(Error::TrainingNotBuilt { gid, outlines_dropped: options.shape != Shape::Field })
