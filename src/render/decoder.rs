@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 
 use super::font::Font;
 use super::glyph::{Drawn, Glyph, Outlines, SharedModel};
+use super::shared_tracks::SharedTracks;
 use crate::error::Error;
 use crate::limits::Limits;
 use crate::model::compose::{Origin, Part};
@@ -21,12 +22,14 @@ pub struct Decoder {
     limits: Limits,
     /// The offsets that the parts of composed glyphs share; decoded with the first composed glyph.
     offsets: Option<Vec<i8>>,
+    /// The tracks that outlines share.
+    tracks: SharedTracks,
 }
 
 impl Decoder {
     /// A decoder for a font's glyphs.
     pub fn new(font: &Font, limits: Limits) -> Self {
-        Self { font: font.clone(), limits, offsets: None }
+        Self { font: font.clone(), limits, offsets: None, tracks: SharedTracks::default() }
     }
 
     /// The font whose glyphs are decoded.
@@ -65,11 +68,12 @@ impl Decoder {
         }
         let (table, scale, limits) = (self.font.table()?, self.font.scale(), self.limits);
         table.check_glyph(glyph)?;
-        let outline = |part: u32| match known(part) {
+        let (font, tracks) = (&self.font, &mut self.tracks);
+        let mut outline = |part: u32| match known(part) {
             Some(SharedModel::Outline(model)) if model.sizes >= sizes && !table.is_composed(part) => {
                 Ok(model)
             }
-            _ => self.font.outline_model(part, sizes, &limits).map(Arc::new),
+            _ => font.outline_model(part, sizes, &limits, tracks).map(Arc::new),
         };
         let model = |part: u32| match known(part) {
             Some(SharedModel::Field(model)) => Ok(model),

@@ -10,6 +10,7 @@ mod metrics;
 mod outline;
 mod rasterizer;
 mod scratch;
+mod shared_tracks;
 mod stored_outline;
 mod strips;
 

@@ -1,6 +1,7 @@
 //! The outline models of a font: messages of the table, and outlines of `glyf`.
 
 use alloc::vec::Vec;
+use core::cell::RefCell;
 
 use read_fonts::TableProvider;
 use read_fonts::tables::glyf::Glyf;
@@ -9,6 +10,7 @@ use read_fonts::tables::loca::Loca;
 
 use super::font::Font;
 use super::outline::outline_points;
+use super::shared_tracks::SharedTracks;
 use crate::error::{Damage, Error};
 use crate::limits::Limits;
 use crate::model::compose::Part;
@@ -31,14 +33,18 @@ impl Font {
         glyph: u32,
         sizes: usize,
         limits: &Limits,
+        tracks: &mut SharedTracks,
     ) -> Result<OutlineModel, Error> {
         let table = self.table()?;
         let (outlines, scale) = (*table.outlines(), self.scale());
         let message = outlines.glyph(glyph)?;
         let mut points = outline_points(self, glyph)?;
         points.shrink();
-        let moves =
-            |axis: usize, number: usize, sizes: usize| self.shared_moves(&outlines, axis, number, sizes);
+        let tracks = RefCell::new(tracks);
+        let moves = |axis: usize, number: usize, sizes: usize| {
+            let decode = || self.shared_moves(&outlines, axis, number, sizes);
+            tracks.borrow_mut().moves(axis, number, sizes, decode)
+        };
         let shared = Shared { levels: outlines.levels(), moves: &moves };
         let known = Known { points: &points, advance: self.advance_units(glyph), scale, shared };
         let (weights, _) = decode(message, &known, sizes).map_err(|damage| damage.of(glyph))?;

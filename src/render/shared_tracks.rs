@@ -1,0 +1,50 @@
+//! Tracks that glyphs share, kept after they are decoded: the next glyph often has the same.
+
+use alloc::vec::Vec;
+
+use crate::error::Damage;
+
+/// The tracks that are kept.
+const KEPT: usize = 64;
+
+/// The moves of some shared tracks. Each has one place, which the last one that belongs there has.
+#[derive(Debug, Default)]
+pub(super) struct SharedTracks {
+    places: Vec<Option<Kept>>,
+}
+
+#[derive(Debug, Clone)]
+struct Kept {
+    axis: usize,
+    number: usize,
+    moves: Vec<i16>,
+}
+
+impl SharedTracks {
+    /// The moves of a shared track along an axis at the first so many sizes, which `decode` gives if they are not kept.
+    ///
+    /// # Errors
+    ///
+    /// Those of `decode`.
+    pub(super) fn moves(
+        &mut self,
+        axis: usize,
+        number: usize,
+        sizes: usize,
+        decode: impl FnOnce() -> Result<Vec<i16>, Damage>,
+    ) -> Result<Vec<i16>, Damage> {
+        if self.places.is_empty() {
+            self.places.resize(KEPT, None);
+        }
+        let place = &mut self.places[(2 * number + axis) % KEPT];
+        if let Some(kept) = place
+            && (kept.axis, kept.number) == (axis, number)
+            && let Some(moves) = kept.moves.get(..sizes)
+        {
+            return Ok(moves.to_vec());
+        }
+        let moves = decode()?;
+        *place = Some(Kept { axis, number, moves: moves.clone() });
+        Ok(moves)
+    }
+}
