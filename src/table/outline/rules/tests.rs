@@ -2,7 +2,6 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// The order of the first six tracks of nine: the ends, then the middles of gaps, those of larger gaps first.
 #[test]
 fn tracks_are_coded_from_the_ends_to_the_middles_of_gaps() {
     let order: Vec<usize> = coding_order(9).iter().map(|(track, _)| *track).collect();
