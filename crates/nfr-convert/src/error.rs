@@ -29,6 +29,10 @@ pub enum Error {
     InvalidParameter(String),
     /// Reading or writing a file failed.
     Io(String),
+    /// The time that was given is over, and the work is not done.
+    TimeLimit,
+    /// The device that networks are trained on is missing, or failed.
+    Device(String),
 }
 
 impl fmt::Display for Error {
@@ -55,7 +59,8 @@ impl fmt::Display for Error {
                 )
             }
             Self::InvalidParameter(what) => write!(f, "invalid parameter: {what}"),
-            Self::Io(what) => write!(f, "{what}"),
+            Self::TimeLimit => write!(f, "the time limit is reached; go on with --resume"),
+            Self::Io(what) | Self::Device(what) => write!(f, "{what}"),
         }
     }
 }

@@ -15,6 +15,16 @@ pub fn split_record(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     (u32::from_be_bytes(*checksum) == crc32fast::hash(payload)).then_some((payload, rest))
 }
 
+/// The payloads of exactly `N` records; `None` if one is cut off or damaged, or more follows.
+pub fn records<const N: usize>(bytes: &[u8]) -> Option<[&[u8]; N]> {
+    let mut rest = bytes;
+    let mut payloads = [&bytes[..0]; N];
+    for payload in &mut payloads {
+        (*payload, rest) = split_record(rest)?;
+    }
+    rest.is_empty().then_some(payloads)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -30,6 +40,9 @@ mod tests {
             rest = after;
         }
         assert!(rest.is_empty());
+        assert_eq!(records(&bytes), Some([b"one".as_slice(), b"", b"three"]));
+        assert_eq!(records::<2>(&bytes), None, "more follows");
+        assert_eq!(records::<4>(&bytes), None, "one is missing");
     }
 
     #[test]

@@ -24,6 +24,19 @@ pub(super) fn dense(
     }
 }
 
+/// The floating-point operations of a training step's products with a layer's weights, for so many rows: the outputs, the
+/// gradient of the weights, and that of the inputs, two for each weight and row.
+pub(super) fn step_operations(layer: &Linear, rows: usize) -> f64 {
+    let [inputs, outputs] = layer.weight.dims();
+    6.0 * (inputs * outputs * rows) as f64
+}
+
+/// The same of layers on top of each other. The inputs of the first are data, which have no gradient.
+pub(super) fn stack_operations(layers: &[Linear], rows: usize) -> f64 {
+    let first = layers.first().map_or(0.0, |layer| step_operations(layer, rows) / 3.0);
+    layers.iter().map(|layer| step_operations(layer, rows)).sum::<f64>() - first
+}
+
 /// Several dense layers, each as wide as given, the first with so many inputs.
 pub(super) fn stack(inputs: usize, widths: &[usize], random: &mut Random, device: &Device) -> Vec<Linear> {
     let mut inputs = inputs;

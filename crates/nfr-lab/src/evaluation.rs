@@ -6,6 +6,7 @@ use super::dataset::{CharGlyph, Dataset};
 use super::error_table::ErrorRow;
 use super::pixel_error::{PixelError, pixel_error};
 use super::train::Epoch;
+use super::train::result::TrainingOrigin;
 use super::truth::TruthSize;
 use nfr_convert::error::Error;
 
@@ -20,6 +21,8 @@ pub struct Evaluation {
     pub glyph: char,
     /// The epochs of its training; none for our own model.
     pub history: Vec<Epoch>,
+    /// Where and how it was trained; nowhere for our own model.
+    pub origin: Option<TrainingOrigin>,
     /// Its bitmap for each size.
     pub drawn: Vec<SquareBitmap>,
     /// The true ones.
@@ -83,6 +86,7 @@ impl Evaluation {
             font: dataset.name.clone(),
             glyph: glyph.0,
             history: Vec::new(),
+            origin: None,
             class_accuracy: None,
             drawn,
             truth,
@@ -99,9 +103,15 @@ impl Evaluation {
         self.rows.iter().map(|row| row.mae).sum::<f64>() / self.rows.len().max(1) as f64
     }
 
-    /// Seconds that its training took, in epochs that this or earlier runs trained.
-    pub fn seconds(&self) -> f64 {
-        self.history.iter().map(|epoch| epoch.seconds).sum()
+    /// Seconds that its training took, in epochs that this or earlier runs trained; none on a device whose times say nothing.
+    pub fn seconds(&self) -> Option<f64> {
+        let timed = self.origin.as_ref().is_some_and(|origin| origin.timed);
+        timed.then(|| self.history.iter().map(|epoch| epoch.seconds).sum())
+    }
+
+    /// Floating-point operations a second of its training's matrix products, where times say anything.
+    pub fn operations_per_second(&self) -> Option<f64> {
+        Some(self.origin.as_ref()?.operations as f64 / self.seconds()?)
     }
 }
 

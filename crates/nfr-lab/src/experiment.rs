@@ -2,56 +2,117 @@
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 use burn::tensor::Device;
-use rayon::prelude::*;
 
+use super::accelerator::{Accelerator, guarded};
 use super::samples::TrainingSample;
 use super::settings::Settings;
 use super::train::checkpoint::Checkpoint;
+use super::train::files::TrainingFiles;
+use super::train::result::TrainingResult;
 use nfr_convert::error::Error;
 
 /// The context of experiments.
+#[derive(Clone)]
 pub struct Experiment<'b> {
     /// The hyperparameters.
     pub settings: Settings,
-    /// Where tensors live, with autodiff.
-    pub device: Device,
+    /// The device of the trainings.
+    pub accelerator: Accelerator,
     /// Trainings that run in parallel.
     pub jobs: usize,
     /// Where trainings are kept, each in a directory of its own; nowhere without one.
     pub directory: Option<PathBuf>,
     /// Whether trainings that are found there are resumed.
     pub resume: bool,
+    /// Directories of other runs, on other machines perhaps, whose results are used.
+    pub merged: Vec<PathBuf>,
+    /// When trainings have to stop.
+    pub deadline: Option<Instant>,
+    /// Whether what unfinished trainings have come to is taken for their result when the time is up.
+    pub unfinished: bool,
+    /// Whether networks of finished trainings are kept beside their results.
+    pub keep_networks: bool,
     /// Called with the name of a training, its finished epochs and all its epochs.
     pub on_progress: &'b (dyn Fn(&str, usize, usize) + Sync),
 }
 
 impl Experiment<'_> {
+    /// Where tensors of trainings live, with autodiff.
+    pub fn device(&self) -> Device {
+        self.accelerator.device.clone().autodiff()
+    }
+
+    /// The same, with networks kept or not.
+    pub fn keeping_networks(&self, keep: bool) -> Experiment<'_> {
+        Experiment { keep_networks: keep, ..self.clone() }
+    }
+
     /// The directory of a training.
     pub fn directory_of(&self, path: &[&str]) -> Option<PathBuf> {
         let directory = self.directory.as_ref()?;
         Some(path.iter().fold(directory.clone(), |path, part| path.join(slug(part))))
     }
 
-    /// The checkpoint of a training that `description` and the bitmaps determine.
+    /// The files of a training that `description` and the bitmaps determine.
     ///
     /// # Errors
     ///
-    /// As [`Checkpoint::new`].
-    pub fn checkpoint(
+    /// As [`TrainingFiles::new`].
+    pub fn files(
         &self,
         path: &[&str],
         description: &str,
         samples: &[TrainingSample],
-    ) -> Result<Option<Checkpoint>, Error> {
+    ) -> Result<Option<TrainingFiles>, Error> {
         let Some(directory) = self.directory_of(path) else { return Ok(None) };
         let mut key = description.as_bytes().to_vec();
         for sample in samples {
             key.extend(format!("{} {:?} {}", sample.size, sample.weight, sample.truth.side).into_bytes());
             key.extend_from_slice(&sample.truth.pixels);
         }
-        Checkpoint::new(directory.join("checkpoint"), &key, self.resume).map(Some)
+        TrainingFiles::new(directory, &key, self.resume).map(Some)
+    }
+
+    /// The result of a training of so many epochs: the one that is kept, here or in a merged directory, or that of `train`. If
+    /// the time is up before, what it has come to by then is kept.
+    ///
+    /// # Errors
+    ///
+    /// As the files' and the training's; `TimeLimit`; `Device` for a device that fails.
+    pub fn result(
+        &self,
+        path: &[&str],
+        files: Option<&TrainingFiles>,
+        epochs: usize,
+        train: impl FnOnce(Option<&Checkpoint>) -> Result<TrainingResult, Error>,
+    ) -> Result<TrainingResult, Error> {
+        let place =
+            |directory: &PathBuf| path.iter().fold(directory.clone(), |path, part| path.join(slug(part)));
+        let elsewhere: Vec<PathBuf> = self.merged.iter().map(place).collect();
+        let found = files.map_or(Ok(None), |files| files.finished(&elsewhere))?;
+        if let Some(result) = found {
+            return Ok(result);
+        }
+        if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            let unfinished = match files {
+                Some(files) if self.unfinished => files.unfinished(&elsewhere)?,
+                _ => None,
+            };
+            return unfinished.ok_or(Error::TimeLimit);
+        }
+        let checkpoint = files.map(TrainingFiles::checkpoint);
+        let result = guarded(|| train(checkpoint.as_ref()))?;
+        let finished = result.history.len() >= epochs;
+        match files {
+            Some(files) if finished => files.finish(&result, self.keep_networks)?,
+            Some(files) => files.leave(&result)?,
+            None => (),
+        }
+        if finished || self.unfinished { Ok(result) } else { Err(Error::TimeLimit) }
     }
 
     /// Applies `work` to each item on `jobs` threads; the results are in the order of the items. A failure ends the work.
@@ -64,23 +125,32 @@ impl Experiment<'_> {
         items: &[T],
         work: impl Fn(&T) -> Result<R, Error> + Sync,
     ) -> Result<Vec<R>, Error> {
-        let failed = AtomicUsize::new(usize::MAX);
-        let run = |(k, item): (usize, &T)| {
-            // A failure at an earlier item decides the result.
-            if k > failed.load(Ordering::Relaxed) {
-                return None;
+        let (next, failed) = (AtomicUsize::new(0), AtomicUsize::new(usize::MAX));
+        let results = Mutex::new(Vec::new());
+        // Begins with the first item, as the most important come first.
+        let worker = || {
+            loop {
+                let k = next.fetch_add(1, Ordering::Relaxed);
+                // A failure at an earlier item decides the result.
+                if k >= items.len() || k > failed.load(Ordering::Relaxed) {
+                    return;
+                }
+                let result = work(&items[k]);
+                if result.is_err() {
+                    failed.fetch_min(k, Ordering::Relaxed);
+                }
+                results.lock().unwrap_or_else(PoisonError::into_inner).push((k, result));
             }
-            let result = work(item);
-            if result.is_err() {
-                failed.fetch_min(k, Ordering::Relaxed);
-            }
-            Some(result)
         };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.jobs).build();
-        let pool = pool.map_err(|e| Error::Io(format!("threads cannot be started ({e})")))?;
-        let results: Vec<_> =
-            pool.install(|| items.par_iter().enumerate().with_max_len(1).map(run).collect());
-        results.into_iter().flatten().collect()
+        std::thread::scope(|scope| {
+            for _ in 1..self.jobs.min(items.len()) {
+                scope.spawn(worker);
+            }
+            worker();
+        });
+        let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+        results.sort_by_key(|(k, _)| *k);
+        results.into_iter().map(|(_, result)| result).collect()
     }
 }
 

@@ -11,10 +11,13 @@ use super::experiment::Experiment;
 use super::gridfit_interpolation::interpolate_weights;
 use super::implicit::{Implicit, Pixels, Statistics};
 use super::memorisation::grid_fit_font;
-use super::network_training::{TrainedNetwork, train_implicit};
-use super::samples::ImplicitSamples;
-use super::tensors::values;
-use super::train::Epoch;
+use super::network_training::{TrainedNetwork, TrainingRun, train_implicit};
+use super::samples::{ImplicitSamples, TrainingSample};
+use super::tensors::{fetch, values};
+use super::train::checkpoint::Checkpoint;
+use super::train::files::TrainingFiles;
+use super::train::result::TrainingOrigin;
+use super::train::{Epoch, TrainingSchedule};
 use super::truth::TruthSize;
 use nfr::Font;
 use nfr::internals::Glyph;
@@ -22,6 +25,11 @@ use nfr::internals::model::compose::Origin;
 use nfr::internals::model::gridfit::{GridFit, Scale};
 use nfr_convert::error::Error;
 use nfr_convert::open::open;
+
+/// The name of the experiment on weights, in paths.
+pub const WEIGHTS: &str = "weights";
+/// The name of the experiment on typefaces.
+pub const STYLES: &str = "styles";
 
 /// A font of a family, and the condition that stands for it.
 pub struct FamilyMember<'s> {
@@ -50,47 +58,84 @@ pub struct FamilyNetwork {
     sizes: usize,
     /// Its epochs.
     pub history: Vec<Epoch>,
+    /// Where and how it was trained.
+    pub origin: TrainingOrigin,
 }
 
-/// Trains one network on a glyph of all members, whose truths share their sizes. `name` is that of the experiment.
-///
-/// # Errors
-///
-/// As the truth's and the checkpoint's; `InvalidParameter` for a member without the character.
-pub fn train(
-    context: &Experiment<'_>,
-    name: &str,
-    members: &[FamilyMember<'_>],
-    glyph: char,
-) -> Result<FamilyNetwork, Error> {
-    let settings = &context.settings;
-    let config = settings.family;
-    let schedule = settings.implicit_schedule(config);
-    let mut samples = Vec::new();
-    for member in members {
-        let gid = glyph_of(member.dataset, glyph)?.1;
-        samples.extend(member.dataset.samples(gid, Some(member.weight))?);
+/// A training of one network on a glyph of several fonts, whose truths share their sizes.
+pub struct FamilyTask<'t> {
+    /// The experiment and the character, as in paths.
+    path: [String; 2],
+    /// The number of sizes.
+    pub sizes: usize,
+    samples: Vec<TrainingSample>,
+    schedule: TrainingSchedule,
+    /// Where it is kept.
+    pub files: Option<TrainingFiles>,
+    context: &'t Experiment<'t>,
+}
+
+impl<'t> FamilyTask<'t> {
+    /// The training of a character for an experiment with this name, which draws a share of the way from the first member to
+    /// the last.
+    ///
+    /// # Errors
+    ///
+    /// As the truth's and [`Experiment::files`]; `InvalidParameter` for a member without the character.
+    pub fn new(
+        context: &'t Experiment<'t>,
+        name: &str,
+        members: &[FamilyMember<'_>],
+        share: f64,
+        glyph: char,
+    ) -> Result<Self, Error> {
+        let settings = &context.settings;
+        let schedule = settings.implicit_schedule(settings.family);
+        let mut samples = Vec::new();
+        for member in members {
+            let gid = glyph_of(member.dataset, glyph)?.1;
+            samples.extend(member.dataset.samples(gid, Some(member.weight))?);
+        }
+        let sizes = samples.len() / members.len().max(1);
+        let code = format!("u{:04x}", u32::from(glyph));
+        let description = format!("{:?} {schedule:?} {share}", settings.family);
+        let files = context.files(&[name, &code], &description, &samples)?;
+        Ok(Self { path: [name.to_owned(), code], sizes, samples, schedule, files, context })
     }
-    let sizes = samples.len() / members.len().max(1);
-    let code = format!("u{:04x}", u32::from(glyph));
-    let checkpoint = context.checkpoint(&[name, &code], &format!("{config:?} {schedule:?}"), &samples)?;
-    let label = format!("{name} {glyph:?}");
-    let on_epoch = |done| (context.on_progress)(&label, done, schedule.rates.len());
-    let TrainedNetwork { network, history, .. } = train_implicit(
-        samples.clone(),
-        sizes,
-        config,
-        &schedule,
-        &context.device,
-        checkpoint.as_ref(),
-        &on_epoch,
-    )?;
-    Ok(FamilyNetwork {
-        network,
-        set: ImplicitSamples::new(samples, sizes, config, &context.device),
-        sizes,
-        history,
-    })
+
+    /// The name of its directory, part by part.
+    pub fn path(&self) -> [&str; 2] {
+        self.path.each_ref().map(String::as_str)
+    }
+
+    /// The epochs of the whole training.
+    pub fn epochs(&self) -> usize {
+        self.schedule.rates.len()
+    }
+
+    /// Trains the network, or goes on from its checkpoint.
+    ///
+    /// # Errors
+    ///
+    /// As [`train_implicit`].
+    pub fn train(&self, checkpoint: Option<&Checkpoint>) -> Result<FamilyNetwork, Error> {
+        let Self { context, schedule, sizes, .. } = self;
+        let (config, device) = (context.settings.family, context.device());
+        let label = self.path.join(" ");
+        let on_epoch = |done| (context.on_progress)(&label, done, schedule.rates.len());
+        let run = TrainingRun {
+            device: &device,
+            layout: context.accelerator.layout(),
+            checkpoint,
+            deadline: context.deadline,
+            on_epoch: &on_epoch,
+        };
+        let TrainedNetwork { network, history, operations, .. } =
+            train_implicit(self.samples.clone(), *sizes, config, schedule, run)?;
+        let origin = TrainingOrigin::new(&context.accelerator, operations);
+        let set = ImplicitSamples::new(self.samples.clone(), *sizes, config, run.layout, &device);
+        Ok(FamilyNetwork { network, set, sizes: *sizes, history, origin })
+    }
 }
 
 impl FamilyNetwork {
@@ -98,7 +143,7 @@ impl FamilyNetwork {
     ///
     /// # Errors
     ///
-    /// `Unsupported` for a device whose numbers cannot be read.
+    /// `Unsupported` for a device whose numbers cannot be read, `Device` for one that fails.
     pub fn member(&self, number: usize) -> Result<Vec<SquareBitmap>, Error> {
         self.draw(number, |_, pixels| {
             pixels.weights.clone().map(|weights| self.network.weight_latents(weights))
@@ -127,21 +172,23 @@ impl FamilyNetwork {
         let square = |size: usize| {
             let (pixels, _) = self.set.batch(&[number * self.sizes + size]);
             let latents = of_weights(size, &pixels);
-            expected_coverage(self.network.forward_from(&pixels, latents, Statistics::Batch))
+            let scores = self.network.forward_from(&pixels, latents, Statistics::Batch);
+            expected_coverage(scores, pixels.count)
         };
         (0..self.sizes).map(square).collect()
     }
 }
 
-/// The bitmap of expected coverage for scores `[side², classes]`: the mean of the classes' levels, each as likely as
+/// The bitmap of expected coverage for scores `[side² or more, classes]`: the mean of the classes' levels, each as likely as
 /// it is. The paper's code draws families so, and single weights from the likeliest class.
-fn expected_coverage(scores: Tensor<2>) -> Result<SquareBitmap, Error> {
-    let [pixels, _] = scores.dims();
+fn expected_coverage(scores: Tensor<2>, count: usize) -> Result<SquareBitmap, Error> {
+    let [rows, _] = scores.dims();
     let device = scores.device();
     let levels: Vec<f32> = (0..CLASSES).map(|class| class as f32 * 255.0 / (CLASSES - 1) as f32).collect();
     let levels = Tensor::<1>::from_floats(levels.as_slice(), &device).unsqueeze::<2>();
-    let coverage = (softmax(scores, 1) * levels).sum_dim(1).into_data();
-    let pixels = values::<f32>(&coverage, pixels)?;
+    let coverage = fetch((softmax(scores, 1) * levels).sum_dim(1))?;
+    let mut pixels = values::<f32>(&coverage, rows)?;
+    pixels.truncate(count);
     Ok(SquareBitmap {
         side: pixels.len().isqrt(),
         pixels: pixels.into_iter().map(|v| v.round() as u8).collect(),

@@ -7,7 +7,8 @@ use burn::tensor::activation::{relu, softmax, tanh};
 use burn::tensor::module::{batch_norm, batch_norm_train};
 use burn::tensor::{Device, Int, Tensor};
 
-use super::dense::{dense, stack};
+use super::dense::{dense, stack, stack_operations, step_operations};
+use super::groups::{applied, flat, normalised, spread};
 use super::random::Random;
 use nfr::internals::network::{self, CLASSES, CONDITIONED, ENCODED, NORM_EPSILON, NORMALISED, REPLACING};
 
@@ -67,13 +68,22 @@ pub struct Implicit {
     output: Linear,
     #[module(skip)]
     residual: bool,
+    /// Whether drawing uses the running statistics, so that training has to follow them.
+    #[module(skip)]
+    running: bool,
 }
 
 /// The pixels of some bitmaps, and the conditions of these.
 #[derive(Debug, Clone)]
 pub struct Pixels {
-    /// For each pixel, its encoded row and column: see [`positions`](nfr::internals::network::positions).
-    pub positions: Tensor<2>,
+    /// For each pixel, its encoded row and column (see [`positions`](nfr::internals::network::positions)), in groups
+    /// `[groups, pixels of a group, inputs]`.
+    pub positions: Tensor<3>,
+    /// The share of each pixel in sums over the batch, `[groups, pixels of a group, 1]`: one divided by the number of pixels, or
+    /// 0 for what fills the last group. Without it, all pixels are in one group, and have equal shares.
+    pub shares: Option<Tensor<3>>,
+    /// The number of pixels, without what fills the last group.
+    pub count: usize,
     /// For each bitmap, the encoded size.
     pub sizes: Option<Tensor<2>>,
     /// For each bitmap, the weight.
@@ -131,6 +141,7 @@ impl Implicit {
             norms: NORMALISED.iter().map(norm).collect(),
             output: dense(width, width, CLASSES, true, &mut random, device),
             residual: config.residual,
+            running: !config.memorisation,
         }
     }
 
@@ -148,6 +159,19 @@ impl Implicit {
         let trunk = dense(2 * encoded + latent, width) + dense(width + latent, width);
         let rest = dense(width, width) * (TRUNK_LAYERS - CONDITIONED.len());
         weight + size + trunk + rest + dense(width, CLASSES) + NORMALISED.len() * 2 * width
+    }
+
+    /// The statistics that training uses: running ones are followed where drawing needs them.
+    pub(super) fn training_statistics(&self) -> Statistics {
+        if self.running { Statistics::Training } else { Statistics::Batch }
+    }
+
+    /// The floating-point operations of a training step's matrix products, for so many pixels of so many bitmaps.
+    pub(super) fn step_operations(&self, pixels: usize, bitmaps: usize) -> f64 {
+        let encoders =
+            stack_operations(&self.weight_encoder, bitmaps) + stack_operations(&self.size_encoder, bitmaps);
+        let shares: f64 = self.from_latent.iter().map(|layer| step_operations(layer, bitmaps)).sum();
+        encoders + shares + stack_operations(&self.trunk, pixels) + step_operations(&self.output, pixels)
     }
 
     /// The size's encoder, the trunk, the shares of the latent vector in its conditioned layers, and the output.
@@ -177,7 +201,7 @@ impl Implicit {
         })
     }
 
-    /// Scores `[pixels, classes]`, before softmax.
+    /// Scores `[pixels, classes]`, before softmax. What fills the last group has scores, too.
     pub fn forward(&self, pixels: &Pixels, statistics: Statistics) -> Tensor<2> {
         let of_weights = pixels.weights.as_ref().map(|weights| self.weight_latents(weights.clone()));
         self.forward_from(pixels, of_weights, statistics)
@@ -193,22 +217,23 @@ impl Implicit {
         let latents = self.latents(pixels.sizes.as_ref(), of_weights);
         let mut x = pixels.positions.clone();
         for (k, layer) in self.trunk.iter().enumerate() {
-            let mut sum = layer.forward(x.clone());
+            let mut sum = applied(layer, x.clone());
             if let (Some(latents), Some(at)) = (&latents, CONDITIONED.iter().position(|c| *c == k)) {
                 let share = self.from_latent[at].forward(latents.clone());
                 sum = sum
                     + match &pixels.bitmap {
-                        Some(bitmap) => share.select(0, bitmap.clone()),
-                        None => share,
+                        // The pixels of several bitmaps are in one group.
+                        Some(bitmap) => share.select(0, bitmap.clone()).unsqueeze(),
+                        None => spread(share, x.dims()[1]),
                     };
             }
             let out = relu(sum);
             x = if self.residual && !REPLACING.contains(&k) { x + out } else { out };
             if let Some(at) = NORMALISED.iter().position(|n| *n == k) {
-                x = normalise(&self.norms[at], x, statistics);
+                x = normalise(&self.norms[at], x, pixels.shares.as_ref(), statistics);
             }
         }
-        self.output.forward(x)
+        flat(applied(&self.output, x))
     }
 }
 
@@ -220,7 +245,22 @@ fn encode(layers: &[Linear], mut x: Tensor<2>) -> Tensor<2> {
     x
 }
 
-fn normalise(norm: &BatchNorm, x: Tensor<2>, statistics: Statistics) -> Tensor<2> {
+fn normalise(
+    norm: &BatchNorm,
+    x: Tensor<3>,
+    shares: Option<&Tensor<3>>,
+    statistics: Statistics,
+) -> Tensor<3> {
+    match shares {
+        Some(shares) => normalised(norm, x, shares),
+        None => {
+            let shape = x.dims();
+            normalise_rows(norm, flat(x), statistics).reshape(shape)
+        }
+    }
+}
+
+fn normalise_rows(norm: &BatchNorm, x: Tensor<2>, statistics: Statistics) -> Tensor<2> {
     let (gamma, beta) = (norm.gamma.val(), norm.beta.val());
     match statistics {
         Statistics::Training => norm.forward(x),
@@ -233,9 +273,13 @@ fn normalise(norm: &BatchNorm, x: Tensor<2>, statistics: Statistics) -> Tensor<2
 }
 
 /// The focal loss of scores `[pixels, classes]` for one-hot classes: the mean of −(1 − p)^γ · ln p, p being the
-/// probability that a pixel's class is given.
-pub fn focal_loss(scores: Tensor<2>, classes: Tensor<2>) -> Tensor<1> {
+/// probability that a pixel's class is given. `shares` are those of [`Pixels`].
+pub fn focal_loss(scores: Tensor<2>, classes: Tensor<2>, shares: Option<&Tensor<3>>) -> Tensor<1> {
     let p = (softmax(scores, 1) * classes).sum_dim(1).clamp(CLIP, 1.0 - CLIP);
     let miss = p.clone().neg() + 1.0;
-    -(miss.powf_scalar(FOCUS) * p.log()).mean()
+    let losses = miss.powf_scalar(FOCUS) * p.log();
+    -match shares {
+        Some(shares) => (losses * flat(shares.clone())).sum(),
+        None => losses.mean(),
+    }
 }

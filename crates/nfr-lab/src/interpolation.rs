@@ -5,8 +5,9 @@ use super::dataset::{CharGlyph, Dataset};
 use super::error_table::ErrorRow;
 use super::evaluation::measure;
 use super::experiment::Experiment;
-use super::family::{FamilyMember, GridFitPair, train};
+use super::family::{FamilyMember, FamilyTask, GridFitPair};
 use super::train::Epoch;
+use super::train::result::{TrainingOrigin, TrainingResult};
 use nfr_convert::error::Error;
 
 /// An interpolated glyph, or one of the two ends.
@@ -39,6 +40,8 @@ pub struct Interpolation {
     pub glyph: char,
     /// The network's epochs.
     pub history: Vec<Epoch>,
+    /// Where and how it was trained.
+    pub origin: TrainingOrigin,
     /// The network's bitmaps of the fonts that it was trained on.
     pub ends: Vec<Rendering>,
     /// The bitmaps between the first and the last of them.
@@ -72,11 +75,37 @@ pub struct InterpolationTarget<'s> {
     pub real: Option<&'s Dataset>,
 }
 
-/// Trains one network on a character of all members and draws what lies between the first and the last.
+/// Trains one network on a character of all members, or takes the result that is kept: its bitmaps of each member at all sizes,
+/// then those between the first and the last.
 ///
 /// # Errors
 ///
-/// As [`train`] and [`GridFitPair::train`].
+/// As [`FamilyTask::new`] and [`Experiment::result`].
+pub fn trained(
+    context: &Experiment<'_>,
+    experiment: &str,
+    members: &[FamilyMember<'_>],
+    share: f64,
+    glyph: char,
+) -> Result<TrainingResult, Error> {
+    let task = FamilyTask::new(context, experiment, members, share, glyph)?;
+    context.result(&task.path(), task.files.as_ref(), task.epochs(), |checkpoint| {
+        let family = task.train(checkpoint)?;
+        let mut drawn = Vec::new();
+        for number in 0..members.len() {
+            drawn.extend(family.member(number)?);
+        }
+        drawn.extend(family.between(0, members.len() - 1, share)?);
+        Ok(TrainingResult { origin: family.origin, history: family.history, drawn })
+    })
+}
+
+/// Trains one network on a character of all members, or takes its result, and measures what it draws of them and between the
+/// first and the last.
+///
+/// # Errors
+///
+/// As [`trained`] and [`GridFitPair::train`].
 pub fn interpolate(
     context: &Experiment<'_>,
     experiment: &str,
@@ -87,7 +116,9 @@ pub fn interpolate(
     let (Some(first), Some(last)) = (members.first(), members.last()) else {
         return Err(Error::InvalidParameter("a family needs two fonts".into()));
     };
-    let family = train(context, experiment, members, glyph)?;
+    let result = trained(context, experiment, members, target.share, glyph)?;
+    let sizes = result.drawn.len() / (members.len() + 1);
+    let part = |number: usize| result.drawn[number * sizes..][..sizes].to_vec();
     let glyph_of = |dataset: &Dataset| dataset.glyphs(glyph.encode_utf8(&mut [0; 4]));
     let truth = |dataset: &Dataset| -> Result<Vec<SquareBitmap>, Error> {
         glyph_of(dataset)?.first().map_or(Ok(Vec::new()), |glyph: &CharGlyph| dataset.squares(glyph.1))
@@ -101,14 +132,14 @@ pub fn interpolate(
         Ok::<_, Error>(Rendering { name: name.to_owned(), of: of.to_owned(), drawn, truth, rows })
     };
     let end = |(number, member): (usize, &FamilyMember<'_>)| {
-        measured(names::IMPLICIT, family.member(number)?, &member.dataset.name, Some(member.dataset))
+        measured(names::IMPLICIT, part(number), &member.dataset.name, Some(member.dataset))
     };
     let ends = members.iter().enumerate().map(end).collect::<Result<_, _>>()?;
     let fits = GridFitPair::train(context, [first.dataset, last.dataset], glyph)?;
     let (lighter, bolder) = (truth(first.dataset)?, truth(last.dataset)?);
     let mean = lighter.iter().zip(&bolder).map(|(a, b)| mixed(a, b, target.share)).collect();
     let drawings = [
-        (names::IMPLICIT, family.between(0, members.len() - 1, target.share)?),
+        (names::IMPLICIT, part(members.len())),
         (names::GRID_FIT, fits.between(first.dataset, target.share, false)?),
         (names::SNAPPED, fits.between(first.dataset, target.share, true)?),
         (names::BITMAPS, mean),
@@ -116,7 +147,13 @@ pub fn interpolate(
         (names::LAST, bolder),
     ];
     let between = drawings.into_iter().map(|(name, drawn)| measured(name, drawn, target.name, target.real));
-    Ok(Interpolation { glyph, ends, between: between.collect::<Result<_, _>>()?, history: family.history })
+    Ok(Interpolation {
+        glyph,
+        ends,
+        between: between.collect::<Result<_, _>>()?,
+        history: result.history,
+        origin: result.origin,
+    })
 }
 
 fn mixed(a: &SquareBitmap, b: &SquareBitmap, share: f64) -> SquareBitmap {

@@ -3,10 +3,12 @@
 
 #![forbid(unsafe_code)]
 
+pub mod accelerator;
 pub mod charts;
 pub mod classes;
 pub mod dataset;
 mod dense;
+pub mod device_check;
 pub mod enlarge;
 pub mod error_table;
 pub mod evaluation;
@@ -14,9 +16,11 @@ pub mod experiment;
 pub mod family;
 mod files;
 pub mod gridfit_interpolation;
+mod groups;
 pub mod implicit;
 pub mod interpolation;
 pub mod masked;
+pub mod masked_samples;
 pub mod memorisation;
 pub mod network_font;
 pub mod network_training;
@@ -24,6 +28,7 @@ pub mod network_variant;
 pub mod output;
 pub mod pictures;
 pub mod pixel_error;
+pub mod queue;
 mod random;
 pub mod report;
 pub mod resize;

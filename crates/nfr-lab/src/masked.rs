@@ -6,7 +6,7 @@ use burn::nn::Linear;
 use burn::tensor::activation::{relu, sigmoid};
 use burn::tensor::{Device, Tensor};
 
-use super::dense::stack;
+use super::dense::{stack, stack_operations};
 use super::random::Random;
 
 /// The network.
@@ -32,6 +32,11 @@ impl Masked {
     pub fn new(widths: &[usize], sizes: usize, side: usize, seed: u64, device: &Device) -> Self {
         let widths: Vec<usize> = widths.iter().copied().chain([side * side]).collect();
         Self { layers: stack(sizes, &widths, &mut Random::new(seed, 0), device) }
+    }
+
+    /// The floating-point operations of a training step's matrix products.
+    pub(super) fn step_operations(&self, bitmaps: usize) -> f64 {
+        stack_operations(&self.layers, bitmaps)
     }
 
     /// Coverage `[bitmaps, largest²]` for one-hot sizes.

@@ -1,36 +1,62 @@
 //! One model of one glyph of one font: the paper's experiments on memorising.
 
+use super::accelerator::guarded;
 use super::dataset::{CharGlyph, Dataset};
 use super::evaluation::{ClassAccuracy, Evaluation};
 use super::experiment::Experiment;
-use super::implicit::Implicit;
-use super::network_training::{TrainedNetwork, train_implicit, train_masked};
+use super::implicit::{Implicit, ImplicitConfig};
+use super::network_training::{TrainedNetwork, TrainingRun, train_implicit, train_masked};
 use super::network_variant::{Ablation, GRID_FIT, NetworkVariant};
+use super::samples::TrainingSample;
+use super::train::TrainingSchedule;
+use super::train::checkpoint::Checkpoint;
+use super::train::files::TrainingFiles;
+use super::train::result::{TrainingOrigin, TrainingResult};
 use super::truth::TruthSize;
 use nfr::{Font, Rasterizer};
 use nfr_convert::error::Error;
 use nfr_convert::{Options, Progress, Shape, convert};
 
-/// Trains a network on a glyph, or takes a finished training from its checkpoint.
+/// The result of training a network on a glyph, or the one that is kept.
 ///
 /// # Errors
 ///
-/// As the truth's and the checkpoint's.
+/// As the truth's and [`Experiment::result`].
+pub fn trained(
+    context: &Experiment<'_>,
+    dataset: &Dataset,
+    glyph: CharGlyph,
+    model: &NetworkVariant,
+) -> Result<TrainingResult, Error> {
+    let task = Task::new(context, dataset, glyph, model)?;
+    let path = task.path();
+    context.result(&path, task.files.as_ref(), task.schedule.rates.len(), |checkpoint| match model {
+        NetworkVariant::Implicit(_) => Ok(with_network(context, task.implicit(context, checkpoint)?).0),
+        NetworkVariant::Masked => {
+            let (widths, samples) = (&context.settings.masked_widths, &task.samples);
+            let trained =
+                task.run(context, checkpoint, |run| train_masked(samples, widths, &task.schedule, run))?;
+            Ok(with_network(context, trained).0)
+        }
+    })
+}
+
+/// Trains a network on a glyph, or takes its result, and measures its bitmaps.
+///
+/// # Errors
+///
+/// As [`trained`].
 pub fn train(
     context: &Experiment<'_>,
     dataset: &Dataset,
     glyph: CharGlyph,
     model: &NetworkVariant,
 ) -> Result<Evaluation, Error> {
-    match model {
-        NetworkVariant::Implicit(without) => {
-            implicit(context, dataset, glyph, without).map(|(evaluation, _)| evaluation)
-        }
-        NetworkVariant::Masked => masked(context, dataset, glyph),
-    }
+    let result = trained(context, dataset, glyph, model)?;
+    evaluated(dataset, glyph, model, result)
 }
 
-/// Trains an implicit network on a glyph, and returns the network too.
+/// Trains an implicit network on a glyph, or goes on from its checkpoint, and returns the network too.
 ///
 /// # Errors
 ///
@@ -41,43 +67,126 @@ pub fn implicit(
     glyph: CharGlyph,
     without: &[Ablation],
 ) -> Result<(Evaluation, Implicit), Error> {
-    let settings = &context.settings;
-    let name = NetworkVariant::Implicit(without.to_vec()).name();
-    let config = without.iter().fold(settings.implicit, |config, part| part.apply(config));
-    let schedule = settings.implicit_schedule(config);
-    let samples = dataset.samples(glyph.1, None)?;
-    let code = format!("u{:04x}", u32::from(glyph.0));
-    let description = format!("{config:?} {schedule:?}");
-    let checkpoint = context.checkpoint(&[&name, &dataset.name, &code], &description, &samples)?;
-    let label = format!("{name} {} {:?}", dataset.name, glyph.0);
-    let on_epoch = |done| (context.on_progress)(&label, done, schedule.rates.len());
-    let sizes = samples.len();
-    let TrainedNetwork { network, history, drawn } =
-        train_implicit(samples, sizes, config, &schedule, &context.device, checkpoint.as_ref(), &on_epoch)?;
-    let evaluation = Evaluation { history, ..Evaluation::new(&name, dataset, glyph, drawn)? };
-    Ok((
-        Evaluation {
-            class_accuracy: Some(ClassAccuracy::new(&evaluation.truth, &evaluation.drawn)?),
-            ..evaluation
-        },
-        network,
-    ))
+    let model = NetworkVariant::Implicit(without.to_vec());
+    let task = Task::new(context, dataset, glyph, &model)?;
+    let checkpoint = task.files.as_ref().map(TrainingFiles::checkpoint);
+    let trained = guarded(|| task.implicit(context, checkpoint.as_ref()))?;
+    let (result, network) = with_network(context, trained);
+    let finished = result.history.len() >= task.schedule.rates.len();
+    match &task.files {
+        Some(files) if finished => files.finish(&result, true)?,
+        Some(files) => files.leave(&result)?,
+        None => (),
+    }
+    if !finished {
+        return Err(Error::TimeLimit);
+    }
+    Ok((evaluated(dataset, glyph, &model, result)?, network))
 }
 
-fn masked(context: &Experiment<'_>, dataset: &Dataset, glyph: CharGlyph) -> Result<Evaluation, Error> {
-    let settings = &context.settings;
-    let name = NetworkVariant::Masked.name();
-    let schedule = settings.masked_schedule();
-    let samples = dataset.samples(glyph.1, None)?;
-    let code = format!("u{:04x}", u32::from(glyph.0));
-    let description = format!("{:?} {schedule:?}", settings.masked_widths);
-    let checkpoint = context.checkpoint(&[&name, &dataset.name, &code], &description, &samples)?;
-    let label = format!("{name} {} {:?}", dataset.name, glyph.0);
-    let on_epoch = |done| (context.on_progress)(&label, done, schedule.rates.len());
-    let widths = &settings.masked_widths;
-    let TrainedNetwork { history, drawn, .. } =
-        train_masked(&samples, widths, &schedule, &context.device, checkpoint.as_ref(), &on_epoch)?;
-    Ok(Evaluation { history, ..Evaluation::new(&name, dataset, glyph, drawn)? })
+/// A finished implicit network whose checkpoint is kept, and what it draws.
+///
+/// # Errors
+///
+/// As [`implicit`].
+pub fn kept(
+    context: &Experiment<'_>,
+    dataset: &Dataset,
+    glyph: CharGlyph,
+) -> Result<Option<(Evaluation, Implicit)>, Error> {
+    let task = Task::new(context, dataset, glyph, &NetworkVariant::Implicit(Vec::new()))?;
+    let Some(files) = &task.files else { return Ok(None) };
+    if !files.checkpoint().path().exists() || files.finished(&[])?.is_none() {
+        return Ok(None);
+    }
+    implicit(context, dataset, glyph, &[]).map(Some)
+}
+
+/// A training of a network on a glyph.
+struct Task<'t> {
+    model: String,
+    font: &'t str,
+    /// The character, as in paths.
+    code: String,
+    config: ImplicitConfig,
+    schedule: TrainingSchedule,
+    samples: Vec<TrainingSample>,
+    files: Option<TrainingFiles>,
+    label: String,
+}
+
+impl<'t> Task<'t> {
+    fn new(
+        context: &Experiment<'_>,
+        dataset: &'t Dataset,
+        glyph: CharGlyph,
+        model: &NetworkVariant,
+    ) -> Result<Self, Error> {
+        let settings = &context.settings;
+        let parts = match model {
+            NetworkVariant::Implicit(parts) => parts.as_slice(),
+            NetworkVariant::Masked => &[],
+        };
+        let config = parts.iter().fold(settings.implicit, |config, part| part.apply(config));
+        let (schedule, layers) = match model {
+            NetworkVariant::Implicit(_) => (settings.implicit_schedule(config), format!("{config:?}")),
+            NetworkVariant::Masked => (settings.masked_schedule(), format!("{:?}", settings.masked_widths)),
+        };
+        let samples = dataset.samples(glyph.1, None)?;
+        let (model, code) = (model.name(), format!("u{:04x}", u32::from(glyph.0)));
+        let description = format!("{layers} {schedule:?}");
+        let files = context.files(&[&model, &dataset.name, &code], &description, &samples)?;
+        let label = format!("{model} {} {:?}", dataset.name, glyph.0);
+        Ok(Self { model, font: &dataset.name, code, config, schedule, samples, files, label })
+    }
+
+    fn path(&self) -> [&str; 3] {
+        [&self.model, self.font, &self.code]
+    }
+
+    fn run<R>(
+        &self,
+        context: &Experiment<'_>,
+        checkpoint: Option<&Checkpoint>,
+        train: impl FnOnce(TrainingRun<'_>) -> R,
+    ) -> R {
+        let on_epoch = |done| (context.on_progress)(&self.label, done, self.schedule.rates.len());
+        let device = &context.device();
+        let layout = context.accelerator.layout();
+        train(TrainingRun { device, layout, checkpoint, deadline: context.deadline, on_epoch: &on_epoch })
+    }
+
+    fn implicit(
+        &self,
+        context: &Experiment<'_>,
+        checkpoint: Option<&Checkpoint>,
+    ) -> Result<TrainedNetwork<Implicit>, Error> {
+        let samples = self.samples.clone();
+        let sizes = samples.len();
+        self.run(context, checkpoint, |run| train_implicit(samples, sizes, self.config, &self.schedule, run))
+    }
+}
+
+/// A finished training as its result and its network.
+pub(super) fn with_network<N>(context: &Experiment<'_>, trained: TrainedNetwork<N>) -> (TrainingResult, N) {
+    let TrainedNetwork { network, history, operations, drawn } = trained;
+    let origin = TrainingOrigin::new(&context.accelerator, operations);
+    (TrainingResult { origin, history, drawn }, network)
+}
+
+/// Measures the bitmaps of a training's result.
+fn evaluated(
+    dataset: &Dataset,
+    glyph: CharGlyph,
+    model: &NetworkVariant,
+    result: TrainingResult,
+) -> Result<Evaluation, Error> {
+    let evaluation = Evaluation::new(&model.name(), dataset, glyph, result.drawn)?;
+    let class_accuracy = match model {
+        NetworkVariant::Implicit(_) => Some(ClassAccuracy::new(&evaluation.truth, &evaluation.drawn)?),
+        NetworkVariant::Masked => None,
+    };
+    Ok(Evaluation { history: result.history, origin: Some(result.origin), class_accuracy, ..evaluation })
 }
 
 struct Silent;

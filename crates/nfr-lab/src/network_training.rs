@@ -1,13 +1,14 @@
 //! Training a network from its first weights to its last epoch, and the bitmaps that it draws then.
 
-use burn::tensor::{Device, Tensor, TensorData};
+use std::time::Instant;
+
+use burn::tensor::Device;
 
 use super::SquareBitmap;
-use super::enlarge::Enlargement;
 use super::implicit::{Implicit, ImplicitConfig, Statistics};
-use super::masked::{Enlarged, Masked};
-use super::samples::{ImplicitSamples, TrainingSample, likeliest};
-use super::tensors::values;
+use super::masked::Masked;
+use super::masked_samples::MaskedSamples;
+use super::samples::{ImplicitSamples, PixelLayout, TrainingSample, likeliest};
 use super::train::checkpoint::Checkpoint;
 use super::train::{Epoch, TrainableNetwork, Training, TrainingSchedule};
 use nfr_convert::error::Error;
@@ -15,109 +16,109 @@ use nfr_convert::error::Error;
 /// Checkpoints are written this often, in seconds of training.
 const SAVE_INTERVAL: f64 = 60.0;
 
-/// A finished training.
+/// A training that is finished, or has fewer epochs than its schedule, since its time was up.
 pub struct TrainedNetwork<N> {
     /// The network.
     pub network: N,
     /// Its epochs.
     pub history: Vec<Epoch>,
+    /// Floating-point operations of the matrix products of all steps.
+    pub operations: u64,
     /// Its bitmap for each training sample.
     pub drawn: Vec<SquareBitmap>,
 }
 
-/// Called after every epoch with the number of those done.
-pub type OnEpoch<'a> = &'a (dyn Fn(usize) + Sync);
+/// How a training runs.
+#[derive(Clone, Copy)]
+pub struct TrainingRun<'r> {
+    /// Where tensors live, with autodiff.
+    pub device: &'r Device,
+    /// How the pixels of the implicit network lie in tensors.
+    pub layout: PixelLayout,
+    /// Where the training is saved, and goes on from.
+    pub checkpoint: Option<&'r Checkpoint>,
+    /// When it has to stop: after the epoch in which this passes.
+    pub deadline: Option<Instant>,
+    /// Called after every epoch with the number of those done.
+    pub on_epoch: &'r (dyn Fn(usize) + Sync),
+}
 
 /// Trains an implicit network on bitmaps of `sizes` sizes.
 ///
 /// # Errors
 ///
-/// As the checkpoint's, and `Unsupported` for a device whose numbers cannot be read.
+/// As the checkpoint's; `Device` for a device that fails, `Unsupported` for one whose numbers cannot be read.
 pub fn train_implicit(
     samples: Vec<TrainingSample>,
     sizes: usize,
     config: ImplicitConfig,
     schedule: &TrainingSchedule,
-    device: &Device,
-    checkpoint: Option<&Checkpoint>,
-    on_epoch: OnEpoch<'_>,
+    run: TrainingRun<'_>,
 ) -> Result<TrainedNetwork<Implicit>, Error> {
-    let set = ImplicitSamples::new(samples, sizes, config, device);
-    let network = Implicit::new(config, schedule.seed, device);
-    let training = run(network, schedule, set.len(), |numbers| set.batch(numbers), checkpoint, on_epoch)?;
+    let set = ImplicitSamples::new(samples, sizes, config, run.layout, run.device);
+    let network = Implicit::new(config, schedule.seed, run.device);
+    let training = train(network, schedule, set.len(), |numbers| set.batch(numbers), run)?;
     let statistics = if config.memorisation { Statistics::Batch } else { Statistics::Running };
     let draw = |(k, sample): (usize, &TrainingSample)| {
         likeliest(training.network.forward(&set.batch(&[k]).0, statistics), sample.truth.side)
     };
     let drawn = set.samples().enumerate().map(draw).collect::<Result<_, _>>()?;
-    Ok(TrainedNetwork { drawn, network: training.network, history: training.history })
+    let operations = operations(&training, set.len(), |numbers| set.batch(numbers));
+    Ok(TrainedNetwork { drawn, operations, network: training.network, history: training.history })
 }
 
 /// Trains a masked network on bitmaps of different sizes, whose boxes ascend.
 ///
 /// # Errors
 ///
-/// As the checkpoint's, and `Unsupported` for a device whose numbers cannot be read.
+/// As [`train_implicit`].
 pub fn train_masked(
     samples: &[TrainingSample],
     widths: &[usize],
     schedule: &TrainingSchedule,
-    device: &Device,
-    checkpoint: Option<&Checkpoint>,
-    on_epoch: OnEpoch<'_>,
+    run: TrainingRun<'_>,
 ) -> Result<TrainedNetwork<Masked>, Error> {
-    let largest = samples.iter().map(|sample| sample.truth.side).max().unwrap_or(1);
-    let items: Vec<_> =
-        samples.iter().map(|sample| (sample, Enlargement::new(sample.truth.side, largest))).collect();
-    let batch = |numbers: &[usize]| {
-        let rows = |columns: usize, row: &dyn Fn(usize) -> Vec<f32>| {
-            let values: Vec<f32> = numbers.iter().flat_map(|k| row(*k)).collect();
-            Tensor::from_data(TensorData::new(values, [numbers.len(), columns]), device)
-        };
-        let hot = |k: usize| (0..items.len()).map(|size| f32::from(u8::from(size == k))).collect();
-        let coverage = |k: usize| -> Vec<f32> {
-            let (sample, enlargement) = &items[k];
-            enlargement.enlarge(&sample.truth).pixels.iter().map(|v| f32::from(*v) / 255.0).collect()
-        };
-        Enlarged {
-            sizes: rows(items.len(), &hot),
-            coverage: rows(largest * largest, &coverage),
-            mask: rows(largest * largest, &|k| items[k].1.mask()),
-        }
-    };
-    let network = Masked::new(widths, items.len(), largest, schedule.seed, device);
-    let training = run(network, schedule, items.len(), batch, checkpoint, on_epoch)?;
-    let draw = |(k, (sample, enlargement)): (usize, &(&TrainingSample, Enlargement))| {
-        let drawn = training.network.forward(batch(&[k]).sizes).into_data();
-        let levels = values::<f32>(&drawn, largest * largest)?;
-        let pixels = enlargement.shrink(&levels).into_iter().map(|v| (v * 255.0).round() as u8).collect();
-        Ok(SquareBitmap { side: sample.truth.side, pixels })
-    };
-    let drawn = items.iter().enumerate().map(draw).collect::<Result<_, Error>>()?;
-    Ok(TrainedNetwork { drawn, network: training.network, history: training.history })
+    let set = MaskedSamples::new(samples, run.device);
+    let network = Masked::new(widths, set.len(), set.largest(), schedule.seed, run.device);
+    let training = train(network, schedule, set.len(), |numbers| set.batch(numbers), run)?;
+    let drawn = set.draw(&training.network)?;
+    let operations = operations(&training, set.len(), |numbers| set.batch(numbers));
+    Ok(TrainedNetwork { drawn, operations, network: training.network, history: training.history })
 }
 
-fn run<L: TrainableNetwork>(
+/// The operations of all epochs: those of an epoch do not depend on how it is cut into batches.
+fn operations<L: TrainableNetwork>(
+    training: &Training<L>,
+    samples: usize,
+    batch: impl Fn(&[usize]) -> L::Batch,
+) -> u64 {
+    let epoch: f64 = (0..samples).map(|k| training.network.operations(&batch(&[k]))).sum();
+    epoch as u64 * training.history.len() as u64
+}
+
+fn train<L: TrainableNetwork>(
     network: L,
     schedule: &TrainingSchedule,
     samples: usize,
     batch: impl Fn(&[usize]) -> L::Batch,
-    checkpoint: Option<&Checkpoint>,
-    on_epoch: OnEpoch<'_>,
+    run: TrainingRun<'_>,
 ) -> Result<Training<L>, Error> {
-    let training = match checkpoint {
+    let training = match run.checkpoint {
         Some(checkpoint) => checkpoint.begin(network)?,
         None => Training::new(network),
     };
     let mut unsaved = 0.0;
     training.train(schedule, samples, batch, |training| {
-        on_epoch(training.history.len());
-        let Some(checkpoint) = checkpoint else { return Ok(()) };
+        (run.on_epoch)(training.history.len());
+        let finished = training.history.len() == schedule.rates.len();
+        let late = !finished && run.deadline.is_some_and(|deadline| Instant::now() >= deadline);
         unsaved += training.history.last().map_or(0.0, |epoch| epoch.seconds);
-        if unsaved >= SAVE_INTERVAL || training.history.len() == schedule.rates.len() {
+        if let Some(checkpoint) = run.checkpoint
+            && (unsaved >= SAVE_INTERVAL || finished || late)
+        {
             unsaved = 0.0;
             checkpoint.save(training)?;
         }
-        Ok(())
+        Ok(!late)
     })
 }

@@ -185,7 +185,10 @@ pub fn summary(settings: &Settings, evaluations: &[Evaluation]) -> String {
         let (mse, mae) = (evaluation.mse(), evaluation.mae());
         let _ = write!(text, "{model:wide$}  {font} {glyph:?}  mse {mse:.3e}  mae {mae:.4}");
         if let Some(last) = evaluation.history.last() {
-            let _ = write!(text, "  loss {:.3e}  {:.1} s", last.loss, evaluation.seconds());
+            let _ = write!(text, "  loss {:.3e}", last.loss);
+        }
+        if let Some((seconds, rate)) = evaluation.seconds().zip(evaluation.operations_per_second()) {
+            let _ = write!(text, "  {seconds:.1} s, {:.3} TFLOP/s", rate / 1e12);
         }
         if let Some(ClassAccuracy { pixels, wrong, mse, rounding }) = evaluation.class_accuracy {
             let _ = write!(

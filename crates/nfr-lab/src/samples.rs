@@ -6,9 +6,10 @@ use burn::tensor::{Device, Int, Tensor, TensorData};
 
 use super::SquareBitmap;
 use super::classes::{class_of, coverage_of};
-use super::implicit::{Implicit, ImplicitConfig, Pixels, Statistics, focal_loss};
+use super::groups::GROUP;
+use super::implicit::{Implicit, ImplicitConfig, Pixels, focal_loss};
 use super::masked::{Enlarged, Masked, masked_loss};
-use super::tensors::values;
+use super::tensors::{fetch, values};
 use super::train::TrainableNetwork;
 use nfr::internals::network::{self, Architecture, CLASSES};
 use nfr_convert::error::Error;
@@ -24,14 +25,35 @@ pub struct TrainingSample {
     pub truth: SquareBitmap,
 }
 
-/// Bitmaps as the implicit network sees them.
+/// How the pixels of a bitmap lie in tensors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PixelLayout {
+    /// In one group.
+    Whole,
+    /// In groups of 512, the last of which is filled up, for GPUs.
+    Groups,
+}
+
+/// Bitmaps as the implicit network sees them, all on the device.
 pub struct ImplicitSamples {
-    config: ImplicitConfig,
-    sizes: usize,
     device: Device,
-    /// For each side, the encoded places of its pixels.
-    positions: HashMap<usize, Tensor<2>>,
-    items: Vec<(TrainingSample, Tensor<2>)>,
+    /// For each side, what all its bitmaps share.
+    boxes: HashMap<usize, SideTensors>,
+    items: Vec<Item>,
+}
+
+/// The encoded places of a box's pixels in their groups, and their shares in sums, if these differ.
+struct SideTensors {
+    positions: Tensor<3>,
+    shares: Option<Tensor<3>>,
+}
+
+/// A bitmap, and on the device its pixels' classes, one-hot, its encoded size and its weight.
+struct Item {
+    sample: TrainingSample,
+    classes: Tensor<2>,
+    size: Option<Tensor<2>>,
+    weight: Option<Tensor<2>>,
 }
 
 /// Pixels and their classes, one-hot `[pixels, classes]`.
@@ -41,7 +63,14 @@ impl TrainableNetwork for Implicit {
     type Batch = ImplicitBatch;
 
     fn loss(&self, (pixels, classes): &Self::Batch) -> Tensor<1> {
-        focal_loss(self.forward(pixels, Statistics::Training), classes.clone())
+        let scores = self.forward(pixels, self.training_statistics());
+        focal_loss(scores, classes.clone(), pixels.shares.as_ref())
+    }
+
+    fn operations(&self, (pixels, _): &Self::Batch) -> f64 {
+        let conditions = [&pixels.sizes, &pixels.weights].into_iter().flatten().next();
+        let bitmaps = conditions.map_or(1, |rows| rows.dims()[0]);
+        self.step_operations(pixels.count, bitmaps)
     }
 }
 
@@ -50,6 +79,10 @@ impl TrainableNetwork for Masked {
 
     fn loss(&self, batch: &Self::Batch) -> Tensor<1> {
         masked_loss(self.forward(batch.sizes.clone()), batch)
+    }
+
+    fn operations(&self, batch: &Self::Batch) -> f64 {
+        self.step_operations(batch.sizes.dims()[0])
     }
 }
 
@@ -64,31 +97,66 @@ fn inputs(config: ImplicitConfig) -> Architecture {
     }
 }
 
-/// The rows of the network's input for a box, those that the renderer computes too.
-fn positions(side: usize, config: ImplicitConfig, device: &Device) -> Tensor<2> {
+/// The groups of a box's pixels, and the pixels of a group.
+fn groups(side: usize, layout: PixelLayout) -> [usize; 2] {
+    match layout {
+        PixelLayout::Whole => [1, side * side],
+        PixelLayout::Groups => [(side * side).div_ceil(GROUP), GROUP],
+    }
+}
+
+/// The network's inputs for a box, those that the renderer computes too, and the shares of its pixels. What fills the last group is
+/// zero.
+fn side_tensors(side: usize, config: ImplicitConfig, layout: PixelLayout, device: &Device) -> SideTensors {
     let architecture = inputs(config);
     let pixels = (0..side).flat_map(|row| (0..side).map(move |column| (row, column)));
-    let values: Vec<f32> =
-        pixels.flat_map(|(row, column)| network::positions(&architecture, row, column, side)).collect();
-    Tensor::from_data(TensorData::new(values, [side * side, architecture.positions()]), device)
+    let values = pixels.flat_map(|(row, column)| network::positions(&architecture, row, column, side));
+    let count = side * side;
+    let [groups, of_group] = groups(side, layout);
+    let grouped = |mut values: Vec<f32>, columns: usize| {
+        values.resize(groups * of_group * columns, 0.0);
+        Tensor::from_data(TensorData::new(values, [groups, of_group, columns]), device)
+    };
+    let shares = match layout {
+        PixelLayout::Whole => None,
+        PixelLayout::Groups => Some(grouped(vec![1.0 / count as f32; count], 1)),
+    };
+    SideTensors { positions: grouped(values.collect(), architecture.positions()), shares }
 }
 
 impl ImplicitSamples {
-    /// Encodes bitmaps of `sizes` sizes.
-    pub fn new(samples: Vec<TrainingSample>, sizes: usize, config: ImplicitConfig, device: &Device) -> Self {
-        let mut by_side = HashMap::new();
+    /// Encodes bitmaps of `sizes` sizes. Without the memorisation adaptations batches mix bitmaps, whose pixels are in one group.
+    pub fn new(
+        samples: Vec<TrainingSample>,
+        sizes: usize,
+        config: ImplicitConfig,
+        layout: PixelLayout,
+        device: &Device,
+    ) -> Self {
+        let layout = if config.memorisation { layout } else { PixelLayout::Whole };
+        let mut boxes = HashMap::new();
+        let architecture = inputs(config);
+        let tensor = |values: Vec<f32>, rows: usize| {
+            let columns = values.len() / rows;
+            Tensor::from_data(TensorData::new(values, [rows, columns]), device)
+        };
         let item = |sample: TrainingSample| {
             let side = sample.truth.side;
-            by_side.entry(side).or_insert_with(|| positions(side, config, device));
-            let mut hot = vec![0.0f32; side * side * CLASSES];
+            boxes.entry(side).or_insert_with(|| side_tensors(side, config, layout, device));
+            let [groups, of_group] = groups(side, layout);
+            let mut hot = vec![0.0f32; groups * of_group * CLASSES];
             for (row, pixel) in hot.chunks_exact_mut(CLASSES).zip(&sample.truth.pixels) {
                 row[class_of(*pixel)] = 1.0;
             }
-            let hot = Tensor::from_data(TensorData::new(hot, [side * side, CLASSES]), device);
-            (sample, hot)
+            Item {
+                classes: tensor(hot, groups * of_group),
+                size: config.size.then(|| tensor(network::condition(&architecture, sample.size, sizes), 1)),
+                weight: config.weight.then(|| tensor(vec![sample.weight.unwrap_or_default() as f32], 1)),
+                sample,
+            }
         };
         let items = samples.into_iter().map(item).collect();
-        Self { config, sizes, device: device.clone(), positions: by_side, items }
+        Self { device: device.clone(), boxes, items }
     }
 
     /// The number of bitmaps.
@@ -103,54 +171,53 @@ impl ImplicitSamples {
 
     /// The bitmaps.
     pub fn samples(&self) -> impl Iterator<Item = &TrainingSample> {
-        self.items.iter().map(|(sample, _)| sample)
+        self.items.iter().map(|item| &item.sample)
     }
 
     /// A batch of some bitmaps.
     pub fn batch(&self, numbers: &[usize]) -> ImplicitBatch {
-        let items: Vec<_> = numbers.iter().map(|k| &self.items[*k]).collect();
-        let positions = items.iter().map(|(sample, _)| self.positions[&sample.truth.side].clone());
-        let classes = items.iter().map(|(_, hot)| hot.clone());
-        let row = |values: Vec<Vec<f32>>| {
-            let columns = values.first().map_or(0, Vec::len);
-            Tensor::from_data(TensorData::new(values.concat(), [items.len(), columns]), &self.device)
+        let items: Vec<&Item> = numbers.iter().map(|k| &self.items[*k]).collect();
+        let rows = |of: &dyn Fn(&Item) -> Option<Tensor<2>>| {
+            let rows: Option<Vec<Tensor<2>>> = items.iter().map(|item| of(item)).collect();
+            rows.map(|rows| joined(rows, 0))
         };
-        let architecture = inputs(self.config);
-        let size = |(sample, _): &&(TrainingSample, Tensor<2>)| {
-            network::condition(&architecture, sample.size, self.sizes)
-        };
-        let weight =
-            |(sample, _): &&(TrainingSample, Tensor<2>)| vec![sample.weight.unwrap_or_default() as f32];
+        let boxes: Vec<&SideTensors> =
+            items.iter().map(|item| &self.boxes[&item.sample.truth.side]).collect();
         let pixels = Pixels {
-            sizes: self.config.size.then(|| row(items.iter().map(size).collect())),
-            weights: self.config.weight.then(|| row(items.iter().map(weight).collect())),
+            count: items.iter().map(|item| item.sample.truth.pixels.len()).sum(),
+            sizes: rows(&|item| item.size.clone()),
+            weights: rows(&|item| item.weight.clone()),
             bitmap: (items.len() > 1).then(|| self.numbers(&items)),
-            positions: joined(positions.collect()),
+            positions: joined(boxes.iter().map(|of_side| of_side.positions.clone()).collect(), 1),
+            // Groups hold one bitmap.
+            shares: boxes[0].shares.clone(),
         };
-        (pixels, joined(classes.collect()))
+        (pixels, joined(items.iter().map(|item| item.classes.clone()).collect(), 0))
     }
 
     /// For each pixel the number of its bitmap.
-    fn numbers(&self, items: &[&(TrainingSample, Tensor<2>)]) -> Tensor<1, Int> {
+    fn numbers(&self, items: &[&Item]) -> Tensor<1, Int> {
         let numbers: Vec<i32> = (0i32..)
             .zip(items)
-            .flat_map(|(k, (sample, _))| std::iter::repeat_n(k, sample.truth.pixels.len()))
+            .flat_map(|(k, item)| std::iter::repeat_n(k, item.sample.truth.pixels.len()))
             .collect();
         let count = numbers.len();
         Tensor::from_data(TensorData::new(numbers, [count]), &self.device)
     }
 }
 
-fn joined(mut tensors: Vec<Tensor<2>>) -> Tensor<2> {
-    if tensors.len() == 1 { tensors.remove(0) } else { Tensor::cat(tensors, 0) }
+fn joined<const D: usize>(mut tensors: Vec<Tensor<D>>, dimension: usize) -> Tensor<D> {
+    if tensors.len() == 1 { tensors.remove(0) } else { Tensor::cat(tensors, dimension) }
 }
 
-/// The bitmap that scores `[side², classes]` choose: for each pixel the likeliest class.
+/// The bitmap that scores `[side² or more, classes]` choose: for each pixel the likeliest class.
 ///
 /// # Errors
 ///
-/// `Unsupported` for scores of another number of pixels.
+/// `Unsupported` for scores that cannot be read, `Device` for a device that fails.
 pub fn likeliest(scores: Tensor<2>, side: usize) -> Result<SquareBitmap, Error> {
-    let classes = values::<i32>(&scores.argmax(1).into_data().convert::<i32>(), side * side)?;
+    let [rows, _] = scores.dims();
+    let mut classes = values::<i32>(&fetch(scores.argmax(1))?.convert::<i32>(), rows)?;
+    classes.truncate(side * side);
     Ok(SquareBitmap { side, pixels: classes.into_iter().map(|class| coverage_of(class as usize)).collect() })
 }

@@ -7,7 +7,7 @@ use super::SquareBitmap;
 use super::dataset::{CharGlyph, Dataset};
 use super::implicit::{Implicit, ImplicitConfig};
 use super::network_font::{pack, with_networks};
-use super::tensors::values;
+use super::tensors::{fetch, values};
 use super::truth::TruthSize;
 use nfr::internals::network::Precision;
 use nfr::internals::network::{Architecture, CONDITIONED, Dense, NetworkSize, NetworkWeights, Norm};
@@ -113,7 +113,7 @@ fn dense(layer: &Linear, from_latent: Option<&Linear>) -> Result<Dense, Error> {
 
 fn numbers<const D: usize>(tensor: Tensor<D>) -> Result<Vec<f32>, Error> {
     let count = tensor.dims().iter().product();
-    values(&tensor.into_data(), count)
+    values(&fetch(tensor)?, count)
 }
 
 /// A network's bitmaps as a font shows them: blank outside the box of the hinted glyph, which is what is drawn.

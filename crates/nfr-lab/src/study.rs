@@ -1,14 +1,16 @@
 //! All experiments of the paper's evaluation, one after the other, and their results.
 
+use std::time::Instant;
+
 use super::SquareBitmap;
 use super::dataset::{CharGlyph, Dataset};
 use super::error_table::ErrorRow;
 use super::evaluation::{Evaluation, measure};
 use super::experiment::Experiment;
-use super::family::FamilyMember;
+use super::family::{FamilyMember, STYLES, WEIGHTS};
 use super::implicit::Implicit;
 use super::interpolation::{Interpolation, InterpolationTarget, interpolate};
-use super::memorisation::{grid_fit, implicit, train};
+use super::memorisation::{grid_fit, kept, train};
 use super::network_variant::{Ablation, NetworkVariant};
 use super::pixel_error::pixel_error;
 use super::resize::{Method, shrunk, single_wrong_pixel};
@@ -24,6 +26,8 @@ pub struct StudyPlan<'s> {
     pub all_sizes: &'s Dataset,
     /// The characters that all models learn.
     pub glyphs: &'s str,
+    /// Those of them that are trained first, and shown in pictures.
+    pub shown: &'s str,
     /// The characters of the ablations.
     pub ablated: &'s str,
     /// The characters that are stored in a font.
@@ -93,64 +97,69 @@ pub struct StudyResults {
     pub wrong_pixel: Vec<WrongPixel>,
 }
 
+/// The place between two weights or typefaces that is drawn.
+pub const SHARE: f64 = 0.5;
+
 /// The name of unhinted bitmaps in tables.
 pub const UNHINTED: &str = "unhinted";
 
 impl StudyPlan<'_> {
-    /// Runs all experiments. If the context resumes, finished trainings are taken from its directory.
+    /// The results of what is finished, with our own models of the same glyphs beside it. Nothing is trained but these.
     ///
     /// # Errors
     ///
     /// As the experiments'.
-    pub fn run(&self, context: &Experiment<'_>) -> Result<StudyResults, Error> {
+    pub fn results(&self, context: &Experiment<'_>) -> Result<StudyResults, Error> {
+        // With no time left, what is not finished stays so.
+        let context =
+            Experiment { resume: true, deadline: Some(Instant::now()), unfinished: true, ..context.clone() };
         let mut results = StudyResults::default();
-        self.memorise(context, &mut results)?;
-        self.ablate(context, &mut results)?;
-        let weights = |glyph: &char| {
-            let share = 0.5;
-            let target = InterpolationTarget { name: &self.between.name, share, real: Some(self.between) };
-            interpolate(context, "weights", &self.weights, target, *glyph)
+        self.memorised(&context, &mut results)?;
+        let weights = |glyph: char| {
+            let target =
+                InterpolationTarget { name: &self.between.name, share: SHARE, real: Some(self.between) };
+            interpolate(&context, WEIGHTS, &self.weights, target, glyph)
         };
-        let weighted: Vec<char> = self.weighted.chars().collect();
-        results.weights = context.each(&weighted, weights)?;
-        let styles = |glyph: &char| {
-            let target = InterpolationTarget { name: "between the typefaces", share: 0.5, real: None };
-            interpolate(context, "styles", &self.styles, target, *glyph)
+        results.weights = finished(self.weighted.chars().map(weights))?;
+        let styles = |glyph: char| {
+            let target = InterpolationTarget { name: "between the typefaces", share: SHARE, real: None };
+            interpolate(&context, STYLES, &self.styles, target, glyph)
         };
-        let styled: Vec<char> = self.styled.chars().collect();
-        results.styles = context.each(&styled, styles)?;
+        results.styles = finished(self.styled.chars().map(styles))?;
         self.compare_bitmaps(&mut results)?;
-        self.store(context, &mut results)?;
+        self.store(&context, &mut results)?;
         Ok(results)
     }
 
-    fn memorise(&self, context: &Experiment<'_>, results: &mut StudyResults) -> Result<(), Error> {
-        let mut trainings = Vec::new();
+    fn memorised(&self, context: &Experiment<'_>, results: &mut StudyResults) -> Result<(), Error> {
+        let models = [NetworkVariant::Implicit(Vec::new()), NetworkVariant::Masked];
+        let mut networks = Vec::new();
         for dataset in self.fonts {
             let glyphs = dataset.glyphs(self.glyphs)?;
-            for (evaluation, bytes) in grid_fit(context, dataset, &glyphs)? {
+            let mut known = Vec::new();
+            for model in &models {
+                let evaluated = glyphs.iter().map(|glyph| train(context, dataset, *glyph, model));
+                let evaluated = finished(evaluated)?;
+                known.extend(evaluated.iter().map(|one| one.glyph));
+                networks.extend(evaluated);
+            }
+            let ours: Vec<CharGlyph> =
+                glyphs.into_iter().filter(|(character, _)| known.contains(character)).collect();
+            if ours.is_empty() {
+                continue;
+            }
+            for (evaluation, bytes) in grid_fit(context, dataset, &ours)? {
                 results.evaluations.push(evaluation);
                 results.grid_fit_bytes.push(bytes);
             }
-            let models = [NetworkVariant::Implicit(Vec::new()), NetworkVariant::Masked];
-            trainings.extend(models.into_iter().flat_map(|model| {
-                glyphs.iter().map(move |glyph| (dataset, *glyph, model.clone())).collect::<Vec<_>>()
-            }));
         }
-        results.evaluations.extend(
-            context.each(&trainings, |(dataset, glyph, model)| train(context, dataset, *glyph, model))?,
-        );
-        Ok(())
-    }
-
-    fn ablate(&self, context: &Experiment<'_>, results: &mut StudyResults) -> Result<(), Error> {
+        results.evaluations.extend(networks);
         let glyphs = self.fonts[0].glyphs(self.ablated)?;
-        let trainings: Vec<(CharGlyph, NetworkVariant)> = Ablation::ALL
-            .into_iter()
-            .flat_map(|part| glyphs.iter().map(move |glyph| (*glyph, NetworkVariant::Implicit(vec![part]))))
-            .collect();
-        results.ablations =
-            context.each(&trainings, |(glyph, model)| train(context, &self.fonts[0], *glyph, model))?;
+        for part in Ablation::ALL {
+            let model = NetworkVariant::Implicit(vec![part]);
+            let evaluated = glyphs.iter().map(|glyph| train(context, &self.fonts[0], *glyph, &model));
+            results.ablations.extend(finished(evaluated)?);
+        }
         Ok(())
     }
 
@@ -178,22 +187,21 @@ impl StudyPlan<'_> {
         Ok(())
     }
 
+    /// Networks in fonts, of those characters whose networks are kept here.
     fn store(&self, context: &Experiment<'_>, results: &mut StudyResults) -> Result<(), Error> {
         let dataset = &self.fonts[0];
         for glyph in dataset.glyphs(self.stored)? {
-            // The training is there already: it is one of the first.
-            let again = Experiment {
-                settings: context.settings.clone(),
-                device: context.device.clone(),
-                directory: context.directory.clone(),
-                resume: true,
-                ..*context
-            };
-            let (before, network) = implicit(&again, dataset, glyph, &[])?;
-            results.stored.extend(store(context, dataset, glyph, &network, &before)?);
+            if let Some((before, network)) = kept(context, dataset, glyph)? {
+                results.stored.extend(store(context, dataset, glyph, &network, &before)?);
+            }
         }
         Ok(())
     }
+}
+
+/// What is finished of some experiments.
+fn finished<T>(all: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>, Error> {
+    all.filter(|one| !matches!(one, Err(Error::TimeLimit))).collect()
 }
 
 /// Stores a network with 16-bit and with 8-bit weights in a font, and draws it from there.

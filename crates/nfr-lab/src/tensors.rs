@@ -1,6 +1,7 @@
 //! Numbers out of tensors.
 
-use burn::tensor::{Element, TensorData};
+use burn::tensor::kind::Basic;
+use burn::tensor::{Element, Tensor, TensorData};
 
 use nfr_convert::error::Error;
 
@@ -19,6 +20,23 @@ pub(super) fn values<E: Element>(data: &TensorData, count: usize) -> Result<Vec<
             E::dtype()
         ))),
     }
+}
+
+/// A tensor's numbers from its device, which is waited for.
+///
+/// # Errors
+///
+/// `Device` if the device fails.
+pub(super) fn fetch<const D: usize, K: Basic>(tensor: Tensor<D, K>) -> Result<TensorData, Error> {
+    tensor.try_into_data().map_err(|error| device_failed(&error.to_string()))
+}
+
+/// The error of a device that failed, from the first line of what it says.
+pub(super) fn device_failed(reason: &str) -> Error {
+    let first = reason.lines().next().unwrap_or_default();
+    Error::Device(format!(
+        "the device failed ({first}); what was saved is kept: go on with --resume, with fewer --jobs if its memory was full"
+    ))
 }
 
 #[cfg(test)]

@@ -1,18 +1,21 @@
 //! The experiments on one glyph and a few epochs.
 
+use std::time::{Duration, Instant};
+
 use burn::tensor::{Device, Tensor};
 
 use super::SquareBitmap;
+use super::accelerator::Accelerator;
 use super::dataset::Dataset;
 use super::evaluation::ClassAccuracy;
 use super::experiment::Experiment;
-use super::family::{FamilyMember, train as train_family};
+use super::family::{FamilyMember, FamilyTask};
 use super::implicit::{Implicit, ImplicitConfig, Statistics, focal_loss};
 use super::interpolation::{InterpolationTarget, interpolate, names};
 use super::masked::{Enlarged, masked_loss};
 use super::memorisation::{implicit, train};
 use super::network_variant::{Ablation, NetworkVariant};
-use super::samples::ImplicitSamples;
+use super::samples::{ImplicitSamples, PixelLayout};
 use super::settings::{ExperimentScale, Settings};
 use super::stored_network::{network_weights, stored_font};
 use super::study::store;
@@ -52,10 +55,14 @@ fn small(epochs: usize) -> Settings {
 fn context<'b>(settings: Settings, directory: Option<&std::path::Path>, resume: bool) -> Experiment<'b> {
     Experiment {
         settings,
-        device: Device::flex().autodiff(),
+        accelerator: Accelerator::processor(),
         jobs: 2,
         directory: directory.map(Into::into),
         resume,
+        merged: Vec::new(),
+        deadline: None,
+        unfinished: false,
+        keep_networks: true,
         on_progress: &|_, _, _| (),
     }
 }
@@ -70,7 +77,7 @@ fn the_focal_loss_is_that_worked_out_by_hand() {
     // The softmax of (0, 0) is ½: (½)⁶ · ln 2. That of (ln 3, 0) is ¾ and ¼: (¼)⁶ · ln(4/3), (¾)⁶ · ln 4.
     let loss = |scores: [f32; 2], classes: [f32; 2]| {
         let [scores, classes] = [scores, classes].map(|row| Tensor::<2>::from_floats([row], &device));
-        values(focal_loss(scores, classes))[0]
+        values(focal_loss(scores, classes, None))[0]
     };
     let ln3 = 3f32.ln();
     let cases = [
@@ -84,7 +91,8 @@ fn the_focal_loss_is_that_worked_out_by_hand() {
         assert!((loss / expected - 1.0).abs() < 1e-4, "{loss} for {expected}");
     }
     let scores = Tensor::<2>::from_floats([[0.0, 0.0], [ln3, 0.0]], &device);
-    let both = values(focal_loss(scores, Tensor::<2>::from_floats([[1.0, 0.0], [1.0, 0.0]], &device)))[0];
+    let both =
+        values(focal_loss(scores, Tensor::<2>::from_floats([[1.0, 0.0], [1.0, 0.0]], &device), None))[0];
     assert!((both - (cases[0].1 + cases[1].1) / 2.0).abs() < 1e-6, "the mean over pixels");
 }
 
@@ -166,6 +174,31 @@ fn every_ablation_trains_and_leaves_out_what_it_says() {
 }
 
 #[test]
+fn pixels_in_groups_train_as_those_in_one() {
+    let dataset = serif(&[20, 26, 40]);
+    let samples = dataset.samples(dataset.glyphs("a").unwrap()[0].1, None).unwrap();
+    let (settings, device) = (small(1), Device::flex().autodiff());
+    let train = |layout: PixelLayout| {
+        let set = ImplicitSamples::new(samples.clone(), 3, settings.implicit, layout, &device);
+        let network = Implicit::new(settings.implicit, 1, &device);
+        // At a low rate, so that rounding is not magnified from step to step.
+        let steps = (0..12).map(|step| set.batch(&[step % 3]));
+        let (training, losses) = super::train::Training::new(network).steps(1e-5, steps).unwrap();
+        let scores = training.network.forward(&set.batch(&[1]).0, Statistics::Batch);
+        (losses, super::samples::likeliest(scores, 26).unwrap())
+    };
+    // 400 pixels are less than a group of 512, 676 and 1600 more than one and three.
+    let ((whole, drawn), (groups, in_groups)) = (train(PixelLayout::Whole), train(PixelLayout::Groups));
+    for (whole, groups) in whole.iter().zip(&groups) {
+        assert!((whole / groups - 1.0).abs() < 1e-4, "{whole} {groups}");
+    }
+    assert!(whole[0] > whole[9], "the loss falls");
+    assert_eq!(drawn.pixels.len(), 26 * 26);
+    let other = drawn.pixels.iter().zip(&in_groups.pixels).filter(|(a, b)| a != b).count();
+    assert!(other <= 2, "{other} pixels");
+}
+
+#[test]
 fn a_training_that_was_interrupted_ends_as_one_that_was_not() {
     let dataset = serif(&[20, 26]);
     let glyph = dataset.glyphs("l").unwrap()[0];
@@ -181,12 +214,10 @@ fn a_training_that_was_interrupted_ends_as_one_that_was_not() {
         dataset.samples(glyph.1, None).unwrap(),
         2,
         settings.implicit,
+        PixelLayout::Whole,
         &Device::flex().autodiff(),
     );
-    let checkpoint = |resume| {
-        let path = directory.path().join("checkpoint");
-        super::train::checkpoint::Checkpoint::new(path, b"description", resume).unwrap()
-    };
+    let checkpoint = || super::train::checkpoint::Checkpoint::new(directory.path().join("checkpoint"), 7);
     let network = || Implicit::new(settings.implicit, schedule.seed, &Device::flex().autodiff());
     let first = super::train::Training::new(network());
     let result = first.train(
@@ -194,20 +225,50 @@ fn a_training_that_was_interrupted_ends_as_one_that_was_not() {
         set.len(),
         |numbers| set.batch(numbers),
         |run| {
-            checkpoint(true).save(run)?;
+            checkpoint().save(run)?;
             stopped.set(stopped.get() + 1);
-            if stopped.get() == 4 { Err(Error::Io("stopped".into())) } else { Ok(()) }
+            if stopped.get() == 4 { Err(Error::Io("stopped".into())) } else { Ok(true) }
         },
     );
     assert!(result.is_err());
-    let resumed = checkpoint(true).begin(network()).unwrap();
+    let resumed = checkpoint().begin(network()).unwrap();
     assert_eq!(resumed.history.len(), 4);
-    let resumed = resumed.train(&schedule, set.len(), |numbers| set.batch(numbers), |_| Ok(())).unwrap();
+    let resumed = resumed.train(&schedule, set.len(), |numbers| set.batch(numbers), |_| Ok(true)).unwrap();
     let losses = |history: &[super::train::Epoch]| history.iter().map(|epoch| epoch.loss).collect::<Vec<_>>();
     assert_eq!(losses(&resumed.history), losses(&whole.history));
     let scores = |network: &Implicit| values(network.forward(&set.batch(&[0]).0, Statistics::Batch));
     let (_, straight) = implicit(&context(small(6), None, false), &dataset, glyph, &[]).unwrap();
     assert_eq!(scores(&resumed.network), scores(&straight));
+}
+
+#[test]
+fn a_training_whose_time_is_up_leaves_what_it_has_come_to_and_goes_on() {
+    let dataset = serif(&[20]);
+    let glyph = dataset.glyphs("l").unwrap()[0];
+    let directory = tempfile::tempdir().unwrap();
+    let model = NetworkVariant::Masked;
+    let run = |deadline: Option<Duration>, unfinished: bool| {
+        let deadline = deadline.map(|time| Instant::now() + time);
+        let context =
+            Experiment { deadline, unfinished, ..context(small(3000), Some(directory.path()), true) };
+        train(&context, &dataset, glyph, &model)
+    };
+    let late = Some(Duration::ZERO);
+    assert!(matches!(run(late, true), Err(Error::TimeLimit)), "nothing is there yet");
+    assert!(matches!(run(Some(Duration::from_millis(300)), false), Err(Error::TimeLimit)));
+    let so_far = run(late, true).unwrap();
+    assert!((1..3000).contains(&so_far.history.len()) && so_far.drawn.len() == 1);
+    assert!(matches!(run(late, false), Err(Error::TimeLimit)), "it is taken only where it is asked for");
+    let whole = run(None, false).unwrap();
+    assert_eq!(whole.history[..so_far.history.len()], so_far.history, "it went on from there");
+    assert_eq!(whole.history.len(), 3000);
+    let left: Vec<_> = std::fs::read_dir(directory.path().join("masked/LiberationSerif-Regular/u006c"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name == "unfinished")
+        .collect();
+    assert!(left.is_empty());
+    assert_eq!(run(late, true).unwrap().rows, whole.rows);
 }
 
 #[test]
@@ -229,6 +290,10 @@ fn a_checkpoint_of_something_else_or_a_damaged_one_is_refused_and_kept() {
     refused(small(2), false, "--resume");
     refused(Settings { seed: 2, ..small(2) }, true, "other settings");
     assert_eq!(run(small(2), true).unwrap(), rows, "a finished training is used as it is");
+    // With its result the checkpoint is not needed any more.
+    std::fs::remove_file(path.with_file_name("result")).unwrap();
+    assert_eq!(run(small(2), true).unwrap(), rows, "a finished network draws again");
+    std::fs::remove_file(path.with_file_name("result")).unwrap();
     for at in [0, 12, 40, bytes.len() / 2, bytes.len() - 1] {
         let mut damaged = bytes.clone();
         damaged[at] ^= 1;
@@ -289,7 +354,8 @@ fn at_its_ends_a_family_is_its_members() {
         FamilyMember { dataset: &family[0], weight: -1.0 },
         FamilyMember { dataset: &family[1], weight: 1.0 },
     ];
-    let trained = train_family(&context(small(3), None, false), "styles", &members, 'l').unwrap();
+    let context = context(small(3), None, false);
+    let trained = FamilyTask::new(&context, "styles", &members, 0.5, 'l').unwrap().train(None).unwrap();
     let [first, last] = [0, 1].map(|number| trained.member(number).unwrap());
     assert_eq!(trained.between(0, 1, 0.0).unwrap(), first);
     assert_eq!(trained.between(0, 1, 1.0).unwrap(), last);

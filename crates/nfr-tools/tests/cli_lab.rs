@@ -23,7 +23,9 @@ fn read(directory: &Directory, name: &str) -> String {
 
 #[test]
 fn every_command_has_help() {
-    for command in ["truth", "implicit", "masked", "grid-fit", "store", "weights", "styles", "report"] {
+    for command in
+        ["truth", "implicit", "masked", "grid-fit", "store", "weights", "styles", "device", "report"]
+    {
         assert!(lab(&[command, "--help"], &[]).succeeds().stdout.contains("Usage: nfr lab "));
     }
 }
@@ -56,9 +58,17 @@ fn wrong_usage_is_told() {
     lab(&["store", SANS, "out.ttf", "--text", "l", "--bits", "7"], &out).rejects_usage(&["16 or 8"]);
     lab(&["implicit", SANS, "--text", "\u{1F600}"], &out).fails_with(&["U+1F600"]);
     lab(&["truth", "/nonexistent.ttf"], &out).fails_with(&["/nonexistent.ttf"]);
-    if cfg!(not(feature = "cuda")) {
-        lab(&["masked", SANS, "--text", "l", "--device", "cuda"], &out).rejects_usage(&["--features cuda"]);
+    if cfg!(not(feature = "gpu-wgsl")) {
+        lab(&["masked", SANS, "--text", "l", "--device", "gpu"], &out).rejects_usage(&["--features gpu"]);
     }
+    lab(&["report", "--time-limit", "soon"], &out).rejects_usage(&["no number of minutes"]);
+    lab(&["report", "--time-limit", "1e40"], &out).rejects_usage(&["no time that can pass"]);
+    lab(&["report", "--share", "3/2"], &out).rejects_usage(&["2/3, the second of three"]);
+    lab(&["report", "--merge", "/nonexistent"], &out)
+        .fails_with(&["/nonexistent", "no directory of results"]);
+    lab(&["report", "--beside", "/nonexistent"], &out)
+        .fails_with(&["/nonexistent/claims.csv", "report's directory"]);
+    lab(&["device", SANS, "--text", "l", "--box", "21"], &out).rejects_usage(&["no box of 21 pixels"]);
 }
 
 #[test]
@@ -69,7 +79,7 @@ fn trainings_leave_history_errors_and_settings_and_are_gone_on_with_only_when_as
     for command in ["implicit", "masked"] {
         let first = lab(&[command, SANS], &more).succeeds();
         assert!(first.stdout.starts_with(LABEL) && first.stdout.contains("mse"));
-        lab(&[command, SANS], &more).fails_with(&["--resume", "checkpoint"]);
+        lab(&[command, SANS], &more).fails_with(&["--resume", "holds a training"]);
         let place = format!("out/{command}/LiberationSans-Regular/u006c");
         let history = read(&directory, &format!("{place}/history.csv"));
         assert!(history.starts_with(&format!("# {LABEL}")) && history.lines().count() == 2 + 15);
@@ -150,7 +160,7 @@ fn the_report_shows_every_chart_and_picture_that_it_names() {
     let directory = Directory::new();
     let out = directory.name("out");
     let args = [
-        "report", "--fonts", FONTS, "--text", "li", "--part", "li", "--epochs", "1", "--out", &out, "--quiet",
+        "report", "--fonts", FONTS, "--text", "la", "--part", "la", "--epochs", "1", "--out", &out, "--quiet",
     ];
     let run = lab(&args, &[]).succeeds();
     assert!(run.stdout.starts_with(LABEL) && run.stdout.contains("index.html"));
@@ -166,6 +176,97 @@ fn the_report_shows_every_chart_and_picture_that_it_names() {
             read(&directory, &format!("out/report/{table}.csv")).starts_with(&format!("# {LABEL}")),
             "{table}"
         );
+    }
+}
+
+/// The queue of three characters: 3 fonts × 3 × 2 networks, 4 ablations, 1 weight and 1 pair of typefaces.
+const JOBS: usize = 24;
+
+#[test]
+fn a_queue_stops_goes_on_is_divided_and_merged() {
+    let directory = Directory::new();
+    let (first, second, whole) = (directory.name("first"), directory.name("second"), directory.name("whole"));
+    let queue = |out: &str, more: &[&str]| {
+        let args = [
+            "report",
+            "--fonts",
+            FONTS,
+            "--text",
+            "lai",
+            "--part",
+            "la",
+            "--ablated",
+            "l",
+            "--weighted",
+            "a",
+            "--epochs",
+            "2",
+            "--boxes",
+            "20,24",
+            "--out",
+            out,
+            "--quiet",
+        ];
+        lab(&args, more)
+    };
+    let none = queue(&first, &["--time-limit", "0", "--train-only"]).succeeds().stdout;
+    assert!(none.contains(&format!("0 of {JOBS} trainings are finished; go on with --resume")), "{none}");
+    let half = queue(&first, &["--share", "1/2", "--train-only"]).succeeds().stdout;
+    assert!(half.contains("12 of 12 trainings are finished\n"), "{half}");
+    queue(&first, &["--share", "1/2", "--train-only"]).fails_with(&["--resume"]);
+    let merged = queue(&second, &["--share", "2/2", "--merge", &first]).succeeds().stdout;
+    assert!(merged.contains("12 of 12"), "{merged}");
+    // What is not merged yet is not trained when only the page is asked for.
+    let page = queue(&second, &["--resume", "--time-limit", "0", "--merge", &first]).succeeds().stdout;
+    assert!(page.contains(&format!("{JOBS} of {JOBS} trainings are finished\n")), "{page}");
+    queue(&whole, &["--beside", &format!("{second}/report")]).succeeds();
+    for table in ["errors", "ablations", "weights", "styles"] {
+        let [merged, whole] =
+            ["second", "whole"].map(|run| read(&directory, &format!("{run}/report/{table}.csv")));
+        assert!(merged.lines().count() > 5 && merged == whole, "{table}: {merged}{whole}");
+    }
+    let claims = read(&directory, "whole/report/claims.csv");
+    assert!(
+        claims.lines().nth(1).unwrap().contains("measured at PUBLISHED")
+            || claims.contains("measured at SMALL")
+    );
+    // A damaged result stops the queue; it is not taken for an unfinished training.
+    let result = directory.name("second/masked/LiberationSerif-Regular/u006c/result");
+    std::fs::write(&result, b"nonsense").unwrap();
+    queue(&second, &["--resume", "--train-only"])
+        .fails_with(&["masked/LiberationSerif-Regular/u006c/result", "damaged"]);
+}
+
+#[test]
+fn a_report_of_what_is_finished_says_what_is_not() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let args = ["--text", "l", "--epochs", "1", "--boxes", "20,24", "--out", &out, "--quiet"];
+    lab(&["masked", concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/LiberationSerif-Regular.ttf")], &args)
+        .succeeds();
+    let page = ["report", "--fonts", FONTS, "--part", "l", "--resume", "--time-limit", "0"];
+    let run = lab(&page, &args).succeeds().stdout;
+    assert!(run.contains("1 of 10 trainings are finished; go on with --resume"), "{run}");
+    let claims = read(&directory, "out/report/claims.csv");
+    assert!(claims.contains("masked one's,not run,–"), "{claims}");
+    let trainings = read(&directory, "out/report/trainings.csv");
+    assert!(
+        trainings.lines().count() == 3 && trainings.contains("masked,LiberationSerif-Regular,U+006C,1,"),
+        "{trainings}"
+    );
+    assert!(read(&directory, "out/report/index.html").contains("trained on CPU"));
+}
+
+#[test]
+fn the_processor_trains_as_itself() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let args =
+        ["device", SANS, "--text", "l", "--boxes", "20,24", "--box", "24", "--steps", "3", "--out", &out];
+    let run = lab(&args, &[]).succeeds().stdout;
+    for part in ["on CPU\n", "24×24 pixels", "TFLOP/s", "implicit network, loss of step 3", "0.000 % apart"]
+    {
+        assert!(run.contains(part), "{run}");
     }
 }
 

@@ -1,11 +1,13 @@
 //! The inputs and the parts of a report.
 
+use super::beside::OtherReport;
 use crate::error_table::ErrorRow;
 use crate::evaluation::Evaluation;
 use crate::experiment::Experiment;
 use crate::network_variant::{GRID_FIT, NetworkVariant};
 use crate::statistics::Summary;
 use crate::study::{StudyPlan, StudyResults};
+use crate::train::result::TrainingOrigin;
 use maud::Markup;
 
 /// The inputs of a report.
@@ -17,11 +19,46 @@ pub struct ReportContext<'r> {
     pub plan: &'r StudyPlan<'r>,
     /// Their results.
     pub results: &'r StudyResults,
+    /// Another report, whose verdicts stand beside these.
+    pub beside: Option<&'r OtherReport>,
 }
 
 impl ReportContext<'_> {
+    /// The scale, the settings that matter most, and the devices of the trainings.
     pub(super) fn label(&self) -> String {
-        self.experiment.settings.label()
+        let settings = self.experiment.settings.label();
+        let mut devices: Vec<&str> = self.origins().map(|origin| origin.device.as_str()).collect();
+        devices.sort_unstable();
+        devices.dedup();
+        let devices = match devices.is_empty() {
+            true => String::new(),
+            false => format!("; trained on {}", devices.join(" and ")),
+        };
+        let unfinished = match self.unfinished() {
+            0 => String::new(),
+            count => format!("; UNFINISHED: {count} trainings, with fewer epochs"),
+        };
+        format!("{settings}{devices}{unfinished}")
+    }
+
+    /// The number of results that are of unfinished trainings.
+    fn unfinished(&self) -> usize {
+        let (settings, results) = (&self.experiment.settings, self.results);
+        let masked = NetworkVariant::Masked.name();
+        let epochs =
+            |model: &str| if model == masked { settings.masked_epochs } else { settings.implicit_epochs };
+        let single = results.evaluations.iter().chain(&results.ablations);
+        let single = single.filter(|one| one.origin.is_some() && one.history.len() < epochs(&one.model));
+        let families = results.weights.iter().chain(&results.styles);
+        single.count() + families.filter(|one| one.history.len() < settings.implicit_epochs).count()
+    }
+
+    /// Where the networks of all results were trained.
+    fn origins(&self) -> impl Iterator<Item = &TrainingOrigin> {
+        let results = self.results;
+        let single = results.evaluations.iter().chain(&results.ablations);
+        let families = results.weights.iter().chain(&results.styles);
+        single.filter_map(|one| one.origin.as_ref()).chain(families.map(|one| &one.origin))
     }
 
     /// The name of the font that has all experiments.

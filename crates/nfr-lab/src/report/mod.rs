@@ -1,5 +1,6 @@
 //! The report: every figure and table of the paper's evaluation from the results of a study, on one page.
 
+mod beside;
 mod charts;
 mod claims;
 mod content;
@@ -12,6 +13,7 @@ use std::path::Path;
 use super::files;
 use nfr_convert::error::Error;
 
+pub use beside::OtherReport;
 pub use claims::{Claim, claims};
 pub use content::ReportContext;
 

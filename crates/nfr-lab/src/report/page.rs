@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, PreEscaped, html};
 
-use super::claims::Claim;
+use super::claims::{Claim, NOT_RUN};
 use super::content::{ReportContext, ReportSection};
 
 const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222}\
@@ -41,12 +41,20 @@ pub(super) fn page(context: &ReportContext<'_>, claims: &[Claim], sections: &[Re
                 }
                 h2 { "The paper's claims" }
                 table {
-                    tr { th { "claim" } th { "measured" } th { "verdict" } }
+                    tr {
+                        th { "claim" } th { "measured" } th { "verdict" }
+                        @if let Some(other) = context.beside { th colspan="2" { (other.label) } }
+                    }
                     @for claim in claims {
                         tr {
                             td { (claim.statement) }
                             td { (claim.measured) }
                             td class=(class(claim)) { (claim.verdict()) }
+                            @if let Some(other) = context.beside {
+                                @let (measured, verdict) = other.claim(claim.statement).unwrap_or((NOT_RUN, ""));
+                                td { (measured) }
+                                td { (verdict) }
+                            }
                         }
                     }
                 }

@@ -76,7 +76,8 @@ impl Pictures<'_> {
                 Some(PredictionRow { label, prediction: one.drawn.get(size)?, truth: one.truth.get(size)? })
             });
             let rows: Vec<PredictionRow<'_>> = rows.collect();
-            let side = rows.first().map_or(0, |row| row.truth.side);
+            // Nothing of these characters may be finished yet.
+            let Some(side) = rows.first().map(|row| row.truth.side) else { continue };
             let zoom = if side > LARGE_SIDE { LARGE_ZOOM } else { ZOOM };
             let caption = format!(
                 "{}, boxes of {side}×{side} pixels: what the model draws, its error (red too dark, blue too light), the \

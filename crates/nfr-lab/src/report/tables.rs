@@ -1,6 +1,7 @@
 //! The report's tables as CSV.
 
-use super::claims::Claim;
+use super::beside::CLAIMS;
+use super::claims::{Claim, NOT_RUN};
 use super::content::ReportContext;
 use crate::error_table::{ErrorRow, code_point, csv_table, write_csv};
 use crate::evaluation::{ClassAccuracy, Evaluation};
@@ -34,7 +35,7 @@ pub(super) fn all(
     all.push(("stored.csv", stored(context)?));
     all.push(("wrong-pixel.csv", wrong_pixel(context)?));
     all.push(("trainings.csv", trainings(context)?));
-    all.push(("claims.csv", claimed(claims)?));
+    all.push((CLAIMS, claimed(context, claims)?));
     Ok(all.into_iter().map(|(name, table)| (name, labelled(&label, &table))).collect())
 }
 
@@ -64,7 +65,12 @@ fn trainings(context: &ReportContext<'_>) -> Result<String, Error> {
             [pixels.to_string(), wrong.to_string(), format!("{mse:e}"), format!("{rounding:e}")]
         });
         let [pixels, wrong, mse, rounding] = accuracy.unwrap_or_default();
-        let (epochs, seconds) = (one.history.len().to_string(), format!("{:.1}", one.seconds()));
+        let epochs = one.history.len().to_string();
+        let seconds = one.seconds().map_or_else(String::new, |seconds| format!("{seconds:.1}"));
+        let origin = one.origin.as_ref();
+        let device = origin.map_or_else(String::new, |origin| origin.device.clone());
+        let gigaflops =
+            origin.map_or_else(String::new, |origin| (origin.operations / 1_000_000_000).to_string());
         let (model, font) = (one.model.clone(), one.font.clone());
         [
             model,
@@ -72,6 +78,8 @@ fn trainings(context: &ReportContext<'_>) -> Result<String, Error> {
             code_point(one.glyph),
             epochs,
             seconds,
+            device,
+            gigaflops,
             format!("{loss:e}"),
             pixels,
             wrong,
@@ -85,6 +93,8 @@ fn trainings(context: &ReportContext<'_>) -> Result<String, Error> {
         "glyph",
         "epochs",
         "seconds",
+        "device",
+        "gflop",
         "loss",
         "pixels",
         "wrong_class",
@@ -94,8 +104,18 @@ fn trainings(context: &ReportContext<'_>) -> Result<String, Error> {
     csv_table(header, trained.map(record))
 }
 
-fn claimed(claims: &[Claim]) -> Result<String, Error> {
-    let record =
+fn claimed(context: &ReportContext<'_>, claims: &[Claim]) -> Result<String, Error> {
+    let own =
         |claim: &Claim| [claim.statement.to_owned(), claim.measured.clone(), claim.verdict().to_owned()];
-    csv_table(["claim", "measured", "verdict"], claims.iter().map(record))
+    let Some(other) = context.beside else {
+        return csv_table(["claim", "measured", "verdict"], claims.iter().map(own));
+    };
+    let record = |claim: &Claim| {
+        let [statement, measured, verdict] = own(claim);
+        let (others, other_verdict) = other.claim(claim.statement).unwrap_or((NOT_RUN, ""));
+        [statement, measured, verdict, others.to_owned(), other_verdict.to_owned()]
+    };
+    let [measured, verdict] = ["measured", "verdict"].map(|column| format!("{column} at {}", other.label));
+    let header = ["claim", "measured", "verdict", &measured, &verdict];
+    csv_table(header, claims.iter().map(record))
 }

@@ -5,47 +5,36 @@
 
 use std::fs;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use burn::store::ModuleRecord;
 use burn::tensor::Bytes;
 
-use super::{Epoch, TrainableNetwork, Training};
+use super::epochs::{read_history, written_history};
+use super::{TrainableNetwork, Training};
 use crate::files;
-use nfr::internals::table::{FNV_BASIS, fnv1a};
 use nfr_convert::error::Error;
-use nfr_convert::records::{append_record, split_record};
+use nfr_convert::records::{append_record, records};
 
 /// Begins the heading; a key of 8 bytes follows.
 const MAGIC: &[u8; 10] = b"nfr lab 2\n";
-/// Bytes of a number in the heading and the history.
-const NUMBER: usize = 8;
-/// Bytes of an epoch in the file.
-const EPOCH: usize = 3 * NUMBER;
 
 /// Where a training is kept.
 #[derive(Debug, Clone)]
 pub struct Checkpoint {
     path: PathBuf,
     key: u64,
-    resume: bool,
 }
 
 impl Checkpoint {
-    /// A checkpoint file for a training that `description` determines: settings, seed, and training samples.
-    ///
-    /// # Errors
-    ///
-    /// `Io` if the file is there and `resume` is false.
-    pub fn new(path: PathBuf, description: &[u8], resume: bool) -> Result<Self, Error> {
-        if !resume && path.exists() {
-            return Err(Error::Io(format!(
-                "{} holds a training; go on with it, or use it if it is finished, with --resume, or choose another \
-                 directory with --out",
-                path.display()
-            )));
-        }
-        Ok(Self { key: fnv1a(FNV_BASIS, description), path, resume })
+    /// The checkpoint file of a training with this key.
+    pub fn new(path: PathBuf, key: u64) -> Self {
+        Self { path, key }
+    }
+
+    /// The file's path.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The training that the file holds, or a new one of `network`.
@@ -55,25 +44,13 @@ impl Checkpoint {
     /// `Io` for a file that cannot be read or is of another training, `Malformed` for a damaged one.
     pub fn begin<L: TrainableNetwork>(&self, network: L) -> Result<Training<L>, Error> {
         let bytes = match fs::read(&self.path) {
-            Ok(bytes) if self.resume => bytes,
-            Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(self.unreadable(&e)),
-            _ => return Ok(Training::new(network)),
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Training::new(network)),
+            Err(e) => return Err(self.unreadable(&e)),
         };
         let path = self.path.display();
         let damaged = || Error::Io(format!("{path} is damaged; delete it and train again"));
-        let mut rest = bytes.as_slice();
-        let mut record = || {
-            let (payload, after) = split_record(rest)?;
-            rest = after;
-            Some(payload)
-        };
-        let records = [record(), record(), record(), record()];
-        let [Some(heading), Some(weights), Some(optimizer), Some(history)] = records else {
-            return Err(damaged());
-        };
-        if !rest.is_empty() {
-            return Err(damaged());
-        }
+        let [heading, weights, optimizer, history] = records(&bytes).ok_or_else(damaged)?;
         if heading != self.heading() {
             return Err(Error::Io(format!(
                 "{path} is of a training with other settings; repeat those, or choose another directory with --out"
@@ -87,7 +64,7 @@ impl Checkpoint {
             .optimizer
             .from_bytes(Bytes::from_bytes_vec(optimizer.to_vec()))
             .map_err(|_| damaged())?;
-        training.history = history.chunks_exact(EPOCH).map(read_epoch).collect();
+        training.history = read_history(history).ok_or_else(damaged)?;
         Ok(training)
     }
 
@@ -101,7 +78,7 @@ impl Checkpoint {
             |e: &dyn std::fmt::Display| Error::Io(format!("cannot write {} ({e})", self.path.display()));
         let weights = training.network.clone().into_record().into_bytes().map_err(|e| failed(&e))?;
         let optimizer = training.optimizer.into_bytes().map_err(|e| failed(&e))?;
-        let history: Vec<u8> = training.history.iter().flat_map(written_epoch).collect();
+        let history = written_history(&training.history);
         let mut bytes = Vec::new();
         for payload in [&self.heading()[..], &weights[..], &optimizer[..], &history] {
             append_record(&mut bytes, payload);
@@ -116,15 +93,4 @@ impl Checkpoint {
     fn unreadable(&self, error: &io::Error) -> Error {
         Error::Io(format!("cannot read {} ({})", self.path.display(), error.kind()))
     }
-}
-
-fn written_epoch(epoch: &Epoch) -> impl Iterator<Item = u8> {
-    [epoch.rate, epoch.loss, epoch.seconds].into_iter().flat_map(f64::to_be_bytes)
-}
-
-fn read_epoch(bytes: &[u8]) -> Epoch {
-    let mut numbers =
-        bytes.chunks_exact(NUMBER).map(|number| f64::from_be_bytes(number.try_into().unwrap_or_default()));
-    let mut next = || numbers.next().unwrap_or_default();
-    Epoch { rate: next(), loss: next(), seconds: next() }
 }

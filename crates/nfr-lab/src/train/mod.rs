@@ -1,12 +1,16 @@
 //! Training either network: epochs over shuffled bitmaps with Adam, and a history of the loss.
 
 pub mod checkpoint;
+mod epochs;
+pub mod files;
+pub mod result;
 
 use burn::module::Module;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
 use burn::tensor::Tensor;
 
 use super::random::Random;
+use super::tensors::{fetch, values};
 use nfr_convert::error::Error;
 
 /// Adam's epsilon in the paper's framework. There it is added to the uncorrected root of the second moment, in burn, as
@@ -20,6 +24,10 @@ pub trait TrainableNetwork: Module {
 
     /// The loss of a batch.
     fn loss(&self, batch: &Self::Batch) -> Tensor<1>;
+
+    /// Floating-point operations of a step on a batch in its matrix products: two for each weight and row forward, as many
+    /// for the gradient of the weights, and as many for that of the inputs where these are not data.
+    fn operations(&self, batch: &Self::Batch) -> f64;
 }
 
 /// Epochs, learning rates and batch size of a training.
@@ -44,6 +52,12 @@ pub struct Epoch {
     pub seconds: f64,
 }
 
+/// The order of the bitmaps in an epoch, counted from 0.
+pub(super) fn order(seed: u64, epoch: usize, samples: usize) -> Vec<usize> {
+    // Stream 0 is that of the first weights.
+    Random::new(seed, epoch as u64 + 1).order(samples)
+}
+
 /// A network in training.
 pub struct Training<L> {
     /// The network as it is by now.
@@ -61,7 +75,7 @@ impl<L: TrainableNetwork> Training<L> {
     }
 
     /// Trains until the schedule ends. `batch` makes a batch from the numbers of some of the `samples` bitmaps, `after`
-    /// is called after every epoch.
+    /// is called after every epoch, and says whether to go on.
     ///
     /// # Errors
     ///
@@ -71,25 +85,46 @@ impl<L: TrainableNetwork> Training<L> {
         schedule: &TrainingSchedule,
         samples: usize,
         batch: impl Fn(&[usize]) -> L::Batch,
-        mut after: impl FnMut(&Self) -> Result<(), Error>,
+        mut after: impl FnMut(&Self) -> Result<bool, Error>,
     ) -> Result<Self, Error> {
         for epoch in self.history.len()..schedule.rates.len() {
             let start = std::time::Instant::now();
             let rate = schedule.rates[epoch];
-            // Stream 0 is that of the first weights.
-            let order = Random::new(schedule.seed, epoch as u64 + 1).order(samples);
-            let (mut sum, mut batches) = (0.0, 0);
-            for numbers in order.chunks(schedule.batch) {
-                let loss = self.network.loss(&batch(numbers));
-                sum += f64::from(loss.clone().inner().into_scalar::<f32>());
-                batches += 1;
-                let gradients = GradientsParams::from_grads(loss.backward(), &self.network);
-                self.network = self.optimizer.step(rate, self.network, gradients);
-            }
+            let order = order(schedule.seed, epoch, samples);
+            let losses;
+            (self, losses) = self.steps(rate, order.chunks(schedule.batch).map(&batch))?;
             let seconds = start.elapsed().as_secs_f64();
-            self.history.push(Epoch { rate, loss: sum / f64::from(batches.max(1)), seconds });
-            after(&self)?;
+            let loss = losses.iter().sum::<f64>() / losses.len().max(1) as f64;
+            self.history.push(Epoch { rate, loss, seconds });
+            if !after(&self)? {
+                break;
+            }
         }
         Ok(self)
+    }
+
+    /// Takes a step on each batch, and returns their losses. The device is waited for once, at the end.
+    ///
+    /// # Errors
+    ///
+    /// `Unsupported` for a device whose numbers cannot be read, `Device` for one that fails.
+    pub fn steps(
+        mut self,
+        rate: f64,
+        batches: impl Iterator<Item = L::Batch>,
+    ) -> Result<(Self, Vec<f64>), Error> {
+        let mut losses = Vec::new();
+        for batch in batches {
+            let loss = self.network.loss(&batch);
+            losses.push(loss.clone().inner());
+            let gradients = GradientsParams::from_grads(loss.backward(), &self.network);
+            self.network = self.optimizer.step(rate, self.network, gradients);
+        }
+        if losses.is_empty() {
+            return Ok((self, Vec::new()));
+        }
+        let count = losses.len();
+        let losses = values::<f32>(&fetch(Tensor::cat(losses, 0))?, count)?;
+        Ok((self, losses.into_iter().map(f64::from).collect()))
     }
 }

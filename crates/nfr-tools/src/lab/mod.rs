@@ -1,5 +1,6 @@
 //! `nfr lab`: the models and experiments of the paper "Neural Font Rendering".
 
+mod device;
 mod family;
 mod options;
 mod report;
@@ -27,6 +28,7 @@ enum Command {
     Store(store::Args),
     Weights(family::WeightsArgs),
     Styles(family::StylesArgs),
+    Device(device::Args),
     Report(report::Args),
 }
 
@@ -45,6 +47,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         Command::Store(args) => store::run(args),
         Command::Weights(args) => family::weights(args),
         Command::Styles(args) => family::styles(args),
+        Command::Device(args) => device::run(args),
         Command::Report(args) => report::run(args),
     }
 }

@@ -5,12 +5,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use burn::tensor::Device;
-
 use crate::args::{all_cores, jobs};
 use crate::failure::Failure;
 use crate::files::read;
 use nfr_convert::ppem::PpemList;
+use nfr_lab::accelerator::Accelerator;
 use nfr_lab::dataset::{CharGlyph, Dataset, SIDES};
 use nfr_lab::experiment::Experiment;
 use nfr_lab::settings::{ExperimentScale, Settings};
@@ -34,7 +33,7 @@ pub(super) struct ExperimentArgs {
     /// Go on with trainings that are there already, and use those that are finished
     #[arg(long)]
     resume: bool,
-    /// Where to train: cpu, or cuda where that is built in
+    /// Where to train: cpu, or gpu where that is built in
     #[arg(long, value_name = "NAME", default_value = "cpu", value_parser = device)]
     device: DeviceOption,
     /// Trainings at once; results do not depend on it
@@ -57,18 +56,18 @@ pub(super) struct ExperimentArgs {
 #[derive(Debug, Clone, Copy)]
 enum DeviceOption {
     Cpu,
-    #[cfg(feature = "cuda")]
-    Cuda,
+    #[cfg(feature = "gpu-wgsl")]
+    Gpu,
 }
 
 fn device(name: &str) -> Result<DeviceOption, String> {
     match name {
         "cpu" => Ok(DeviceOption::Cpu),
-        #[cfg(feature = "cuda")]
-        "cuda" => Ok(DeviceOption::Cuda),
-        #[cfg(not(feature = "cuda"))]
-        "cuda" => Err("this program is built without it; build it with --features cuda".into()),
-        _ => Err("use cpu or cuda".into()),
+        #[cfg(feature = "gpu-wgsl")]
+        "gpu" => Ok(DeviceOption::Gpu),
+        #[cfg(not(feature = "gpu-wgsl"))]
+        "gpu" => Err("this program is built without it; build it with --features gpu".into()),
+        _ => Err("use cpu or gpu".into()),
     }
 }
 
@@ -114,17 +113,21 @@ impl ExperimentArgs {
                 let _ = writeln!(io::stderr(), "{training}: {done} of {epochs} epochs");
             }
         };
-        let device = match self.device {
-            DeviceOption::Cpu => Device::flex(),
-            #[cfg(feature = "cuda")]
-            DeviceOption::Cuda => Device::cuda(0),
+        let accelerator = match self.device {
+            DeviceOption::Cpu => Accelerator::processor(),
+            #[cfg(feature = "gpu-wgsl")]
+            DeviceOption::Gpu => Accelerator::gpu()?,
         };
         let context = Experiment {
             settings: self.settings(),
-            device: device.autodiff(),
+            accelerator,
             jobs: self.jobs,
             directory: Some(self.out()),
             resume: self.resume,
+            merged: Vec::new(),
+            deadline: None,
+            unfinished: false,
+            keep_networks: true,
             on_progress: &on_progress,
         };
         work(&context)

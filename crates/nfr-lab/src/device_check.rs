@@ -1,0 +1,152 @@
+//! Whether a device trains as the processor does, and how fast.
+
+use std::time::Instant;
+
+use burn::tensor::Device;
+
+use super::accelerator::{Accelerator, guarded};
+use super::implicit::Implicit;
+use super::masked::Masked;
+use super::masked_samples::MaskedSamples;
+use super::network_variant::NetworkVariant;
+use super::samples::{ImplicitSamples, PixelLayout, TrainingSample};
+use super::settings::Settings;
+use super::train::{TrainableNetwork, Training, TrainingSchedule, order};
+use nfr_convert::error::Error;
+
+/// Rounds of steps that are timed; the median counts.
+const ROUNDS: usize = 5;
+/// Steps of a round.
+pub const ROUND: usize = 20;
+
+/// The losses of the same steps on the processor and on a device.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LossComparison {
+    /// The network.
+    pub network: String,
+    /// The loss of each step on the processor.
+    pub processor: Vec<f64>,
+    /// The loss of each step on the device.
+    pub device: Vec<f64>,
+    /// Seconds that the steps took on each, with the compiling of kernels.
+    pub seconds: [f64; 2],
+}
+
+impl LossComparison {
+    /// How far the losses of the last step are apart, as a share of the processor's.
+    pub fn apart(&self) -> f64 {
+        let last = |losses: &[f64]| losses.last().copied().unwrap_or(f64::NAN);
+        (last(&self.device) / last(&self.processor) - 1.0).abs()
+    }
+}
+
+/// Steps on one bitmap, timed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepTime {
+    /// Seconds of the first [`ROUND`] steps, in which kernels are compiled and chosen.
+    pub first: f64,
+    /// Seconds of a step: the median of some rounds.
+    pub seconds: f64,
+    /// Floating-point operations of a step in its matrix products.
+    pub operations: f64,
+}
+
+/// The losses of a network's steps on a device.
+type Losses<'l> = dyn Fn(&Device, PixelLayout) -> Result<Vec<f64>, Error> + 'l;
+
+/// Trains both networks for some steps on the processor and on a device, from the same weights and in the same order.
+///
+/// # Errors
+///
+/// `Device` for a device that fails.
+pub fn compare_losses(
+    settings: &Settings,
+    samples: &[TrainingSample],
+    steps: usize,
+    accelerator: &Accelerator,
+) -> Result<Vec<LossComparison>, Error> {
+    let implicit = |device: &Device, layout: PixelLayout| {
+        let schedule = settings.implicit_schedule(settings.implicit);
+        let set = ImplicitSamples::new(samples.to_vec(), samples.len(), settings.implicit, layout, device);
+        let network = Implicit::new(settings.implicit, schedule.seed, device);
+        losses(network, &schedule, set.len(), steps, |numbers| set.batch(numbers))
+    };
+    let masked = |device: &Device, _: PixelLayout| {
+        let schedule = settings.masked_schedule();
+        let set = MaskedSamples::new(samples, device);
+        let network = Masked::new(&settings.masked_widths, set.len(), set.largest(), schedule.seed, device);
+        losses(network, &schedule, set.len(), steps, |numbers| set.batch(numbers))
+    };
+    let compare = |network: String, run: &Losses<'_>| {
+        let start = Instant::now();
+        let cpu = Accelerator::processor();
+        let processor = run(&cpu.device.clone().autodiff(), cpu.layout())?;
+        let first = start.elapsed().as_secs_f64();
+        let device = guarded(|| run(&accelerator.device.clone().autodiff(), accelerator.layout()))?;
+        let seconds = [first, start.elapsed().as_secs_f64() - first];
+        Ok::<_, Error>(LossComparison { network, processor, device, seconds })
+    };
+    Ok(vec![
+        compare(NetworkVariant::Implicit(Vec::new()).name(), &implicit)?,
+        compare(NetworkVariant::Masked.name(), &masked)?,
+    ])
+}
+
+/// The losses of the first steps of a training, at its first rate.
+fn losses<L: TrainableNetwork>(
+    network: L,
+    schedule: &TrainingSchedule,
+    samples: usize,
+    steps: usize,
+    batch: impl Fn(&[usize]) -> L::Batch,
+) -> Result<Vec<f64>, Error> {
+    let rate = schedule.rates.first().copied().unwrap_or_default();
+    let epochs = (0..steps).flat_map(|epoch| {
+        let order = order(schedule.seed, epoch, samples);
+        order.chunks(schedule.batch).map(&batch).collect::<Vec<_>>()
+    });
+    let (_, losses) = Training::new(network).steps(rate, epochs.take(steps))?;
+    Ok(losses)
+}
+
+/// Times steps of the implicit network on one bitmap.
+///
+/// # Errors
+///
+/// `Device` for a device that fails.
+pub fn time_steps(
+    settings: &Settings,
+    sample: &TrainingSample,
+    sizes: usize,
+    accelerator: &Accelerator,
+) -> Result<StepTime, Error> {
+    guarded(|| {
+        let device = accelerator.device.clone().autodiff();
+        let set = ImplicitSamples::new(
+            vec![sample.clone()],
+            sizes,
+            settings.implicit,
+            accelerator.layout(),
+            &device,
+        );
+        let rate = settings.implicit_schedule(settings.implicit).rates.first().copied().unwrap_or_default();
+        let mut training = Training::new(Implicit::new(settings.implicit, settings.seed, &device));
+        let operations = training.network.operations(&set.batch(&[0]));
+        let round = |training| {
+            let start = Instant::now();
+            let batches = (0..ROUND).map(|_| set.batch(&[0]));
+            let (training, _) = Training::steps(training, rate, batches)?;
+            Ok::<_, Error>((training, start.elapsed().as_secs_f64()))
+        };
+        let first;
+        (training, first) = round(training)?;
+        let mut seconds = [0.0; ROUNDS];
+        for seconds in &mut seconds {
+            let elapsed;
+            (training, elapsed) = round(training)?;
+            *seconds = elapsed / ROUND as f64;
+        }
+        seconds.sort_by(f64::total_cmp);
+        Ok(StepTime { first, seconds: seconds[ROUNDS / 2], operations })
+    })
+}
