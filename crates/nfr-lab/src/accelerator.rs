@@ -1,7 +1,9 @@
 //! The device that networks are trained on: the processor, or a GPU through Vulkan.
 
+use std::cell::Cell;
 use std::fmt;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{self, AssertUnwindSafe, catch_unwind};
+use std::sync::Once;
 
 use burn::tensor::Device;
 
@@ -99,12 +101,34 @@ impl fmt::Display for Accelerator {
 ///
 /// `Device` after a panic; those of the work.
 pub fn guarded<R>(work: impl FnOnce() -> Result<R, Error>) -> Result<R, Error> {
+    silence_guarded();
+    let outer = GUARDED.replace(true);
     // After a failure nothing of what the work used is used again.
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+    let done = catch_unwind(AssertUnwindSafe(work));
+    GUARDED.set(outer);
+    done.unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no reason is given");
         Err(device_failed(text))
     })
+}
+
+thread_local! {
+    /// Whether a panic of this thread becomes an error.
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Leaves panics that become errors out of what the program prints.
+fn silence_guarded() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let others = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            if !GUARDED.get() {
+                others(info);
+            }
+        }));
+    });
 }
 
 #[cfg(test)]
