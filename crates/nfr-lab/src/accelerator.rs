@@ -1,4 +1,4 @@
-//! The device that networks are trained on: the processor, or a GPU through Vulkan.
+//! The device that networks are trained on: the processor, or a GPU.
 
 use std::cell::Cell;
 use std::fmt;
@@ -39,7 +39,8 @@ impl Accelerator {
         Self { device: Device::flex(), name: "CPU".into(), kind: AcceleratorKind::Processor }
     }
 
-    /// The adapter that wgpu prefers, or that the environment variable `CUBECL_WGPU_DEFAULT_DEVICE` names, through Vulkan.
+    /// The adapter that wgpu prefers, or that the environment variable `CUBECL_WGPU_DEFAULT_DEVICE` names, by Vulkan where
+    /// there is a driver for it.
     /// A process can do this once.
     ///
     /// # Errors

@@ -28,7 +28,7 @@ pub enum Job {
     Styles(char),
 }
 
-/// The jobs of a plan, in their order: both networks for the characters of the ablations on the first font, the ablations, the
+/// The jobs of a plan, in their order: both networks for the shown characters on the first font, the ablations, the
 /// weights, the typefaces, and the rest of the characters by turns of the fonts.
 pub fn jobs(plan: &StudyPlan<'_>) -> Vec<Job> {
     let both = |font: usize, glyph: char| {
