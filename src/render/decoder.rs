@@ -3,6 +3,7 @@
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::font::Font;
 use super::glyph::{Drawn, Glyph, Outlines, SharedModel};
@@ -52,15 +53,15 @@ impl Decoder {
     /// `NoSuchGlyph`, `MissingModel`; `MalformedModel` or `ModelTooLarge` if its bytes are damaged, `DecodedTooLarge`,
     /// `StaleModel`, `NetworksNotBuilt`.
     pub fn glyph(&mut self, glyph: u32) -> Result<Glyph, Error> {
-        self.glyph_with(glyph, self.font.scale().sizes(), |_| None)
+        self.glyph_with(glyph, 0..self.font.scale().sizes(), |_| None)
     }
 
-    /// Decodes a glyph, at the first so many sizes at least. `known` gives the models that are decoded already, for the parts
+    /// Decodes a glyph, at some sizes at least, the first of which begins a section. `known` gives the models that are decoded already, for the parts
     /// of composed glyphs.
     pub(super) fn glyph_with(
         &mut self,
         glyph: u32,
-        sizes: usize,
+        sizes: Range<usize>,
         known: impl Fn(u32) -> Option<SharedModel>,
     ) -> Result<Glyph, Error> {
         if glyph >= self.font.glyph_count() {
@@ -70,10 +71,10 @@ impl Decoder {
         table.check_glyph(glyph)?;
         let (font, tracks) = (&self.font, &mut self.tracks);
         let mut outline = |part: u32| match known(part) {
-            Some(SharedModel::Outline(model)) if model.sizes >= sizes && !table.is_composed(part) => {
+            Some(SharedModel::Outline(model)) if model.has_sizes(&sizes) && !table.is_composed(part) => {
                 Ok(model)
             }
-            _ => font.outline_model(part, sizes, &limits, tracks).map(Arc::new),
+            _ => font.outline_model(part, sizes.clone(), &limits, tracks).map(Arc::new),
         };
         let model = |part: u32| match known(part) {
             Some(SharedModel::Field(model)) => Ok(model),

@@ -49,7 +49,7 @@ pub(super) fn draw_plain<'b>(
 ) -> Result<Option<Placement>, Error> {
     let options = options.checked()?;
     let points = outline_points(font, glyph)?;
-    let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0);
+    let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0..0);
     let model = model.map_err(|damage| damage.of(glyph))?;
     let size = HintedSize { strength: 0.0, ..font.scale().at(options.ppem) };
     let room = |placement: Placement| {

@@ -1,6 +1,7 @@
 //! Drawing many glyphs: decoded models are kept in a cache whose size the caller sets.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::decoder::Decoder;
 use super::font::Font;
@@ -14,6 +15,7 @@ use crate::model::outline::scale_of;
 use crate::number::mul_fixed;
 use crate::options::DrawOptions;
 use crate::placement::Placement;
+use crate::table::outline::sizes_for;
 
 /// Decoded models take up to this many bytes unless the caller says otherwise: about 700 fields.
 const DEFAULT_CACHE: usize = 8 << 20;
@@ -274,19 +276,19 @@ impl Entry {
 }
 
 impl Cache {
-    /// The glyph, decoded for a size at least.
+    /// The glyph, decoded for a size.
     fn get(&mut self, decoder: &mut Decoder, glyph: u32, ppem: f32) -> Result<&mut Entry, Error> {
         self.clock += 1;
         let at = match self.find(glyph) {
             Some(at) if self.entries.get(at).is_some_and(|entry| entry.decoded.has_size(ppem)) => at,
-            // Whoever asks for a larger size may ask for more of them.
+            // Whoever asks for another size may ask for more of them.
             Some(at) => {
                 self.remove(at);
-                self.load(decoder, glyph, decoder.font().scale().sizes())?
+                self.load(decoder, glyph, 0..decoder.font().scale().sizes())?
             }
             None => {
                 let size = decoder.font().scale().at(ppem);
-                self.load(decoder, glyph, size.index + 1)?
+                self.load(decoder, glyph, sizes_for(size.index))?
             }
         };
         let entry = self.entries.get_mut(at).ok_or(Error::NoSuchGlyph(glyph))?;
@@ -298,7 +300,7 @@ impl Cache {
         (*self.indices.get(glyph as usize)? as usize).checked_sub(1)
     }
 
-    fn load(&mut self, decoder: &mut Decoder, glyph: u32, sizes: usize) -> Result<usize, Error> {
+    fn load(&mut self, decoder: &mut Decoder, glyph: u32, sizes: Range<usize>) -> Result<usize, Error> {
         let decoded =
             decoder.glyph_with(glyph, sizes, |part| self.entries[self.find(part)?].decoded.model())?;
         let bytes = decoded.memory();

@@ -1,6 +1,7 @@
 //! Tracks that glyphs share, kept after they are decoded: the next glyph often has the same.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::error::Damage;
 
@@ -17,11 +18,12 @@ pub(super) struct SharedTracks {
 struct Kept {
     axis: usize,
     number: usize,
+    first_size: usize,
     moves: Vec<i16>,
 }
 
 impl SharedTracks {
-    /// The moves of a shared track along an axis at the first so many sizes, which `decode` gives if they are not kept.
+    /// The moves of a shared track along an axis at some sizes, which `decode` gives if they are not kept.
     ///
     /// # Errors
     ///
@@ -30,7 +32,7 @@ impl SharedTracks {
         &mut self,
         axis: usize,
         number: usize,
-        sizes: usize,
+        sizes: Range<usize>,
         decode: impl FnOnce() -> Result<Vec<i16>, Damage>,
     ) -> Result<Vec<i16>, Damage> {
         if self.places.is_empty() {
@@ -38,13 +40,13 @@ impl SharedTracks {
         }
         let place = &mut self.places[(2 * number + axis) % KEPT];
         if let Some(kept) = place
-            && (kept.axis, kept.number) == (axis, number)
-            && let Some(moves) = kept.moves.get(..sizes)
+            && (kept.axis, kept.number, kept.first_size) == (axis, number, sizes.start)
+            && let Some(moves) = kept.moves.get(..sizes.len())
         {
             return Ok(moves.to_vec());
         }
         let moves = decode()?;
-        *place = Some(Kept { axis, number, moves: moves.clone() });
+        *place = Some(Kept { axis, number, first_size: sizes.start, moves: moves.clone() });
         Ok(moves)
     }
 }

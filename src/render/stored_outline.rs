@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 use core::cell::RefCell;
+use core::ops::Range;
 
 use read_fonts::TableProvider;
 use read_fonts::tables::glyf::Glyf;
@@ -27,11 +28,11 @@ use crate::table::range::Coder;
 const MAX_DEPTH: usize = 16;
 
 impl Font {
-    /// Decodes the outline model of a glyph, at the first so many sizes.
+    /// Decodes the outline model of a glyph at some sizes.
     pub(super) fn outline_model(
         &self,
         glyph: u32,
-        sizes: usize,
+        sizes: Range<usize>,
         limits: &Limits,
         tracks: &mut SharedTracks,
     ) -> Result<OutlineModel, Error> {
@@ -41,13 +42,13 @@ impl Font {
         let mut points = outline_points(self, glyph)?;
         points.shrink();
         let tracks = RefCell::new(tracks);
-        let moves = |axis: usize, number: usize, sizes: usize| {
-            let decode = || self.shared_moves(&outlines, axis, number, sizes);
-            tracks.borrow_mut().moves(axis, number, sizes, decode)
+        let moves = |axis: usize, number: usize, sizes: Range<usize>| {
+            let decode = || self.shared_moves(&outlines, axis, number, sizes.clone());
+            tracks.borrow_mut().moves(axis, number, sizes.clone(), decode)
         };
         let shared = Shared { levels: outlines.levels(), moves: &moves };
         let known = Known { points: &points, advance: self.advance_units(glyph), scale, shared };
-        let (weights, _) = decode(message, &known, sizes).map_err(|damage| damage.of(glyph))?;
+        let (weights, _) = decode(message, &known, sizes.clone()).map_err(|damage| damage.of(glyph))?;
         let model = OutlineModel::new(points, weights, scale, sizes).map_err(|damage| damage.of(glyph))?;
         limits.check_decoded(glyph, model.memory())?;
         Ok(model)
@@ -74,13 +75,13 @@ impl Font {
         Ok((parts.collect::<Result<_, Error>>()?, stored.advances))
     }
 
-    /// The moves of a shared track at the first so many sizes.
+    /// The moves of a shared track at some sizes.
     fn shared_moves(
         &self,
         outlines: &OutlineIndex<'_>,
         axis: usize,
         number: usize,
-        sizes: usize,
+        sizes: Range<usize>,
     ) -> Result<Vec<i16>, Damage> {
         let level = outlines.levels()[axis].get(number).map(|level| level.get());
         let message = level.zip(outlines.shared(axis, number));
@@ -111,7 +112,7 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     let (outlines, scale) = (*table.outlines(), font.scale());
     let sizes = scale.sizes();
     let shared_moves =
-        |axis: usize, number: usize, sizes: usize| font.shared_moves(&outlines, axis, number, sizes);
+        |axis: usize, number: usize, sizes: Range<usize>| font.shared_moves(&outlines, axis, number, sizes);
     let shared = Shared { levels: outlines.levels(), moves: &shared_moves };
     for glyph in table.gids().map(u32::from).filter(|glyph| outlines.find(*glyph).is_some()) {
         model.forget();
@@ -126,8 +127,8 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
         } else {
             let points = outline_points(font, glyph)?;
             let known = Known { points: &points, advance: font.advance_units(glyph), scale, shared };
-            decode(message, &known, sizes).and_then(|(mut weights, mut sources)| {
-                code(model, &known, &mut weights, &mut sources, sizes, &mut |question| question.wanted.into())
+            decode(message, &known, 0..sizes).and_then(|(mut weights, mut sources)| {
+                code(model, &known, &mut weights, &mut sources, 0..sizes, &mut |question| question.wanted.into())
             })
         };
         recoded.map_err(|damage| damage.of(glyph))?;
@@ -135,8 +136,8 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     for (axis, levels) in outlines.levels().into_iter().enumerate() {
         for (number, level) in levels.iter().enumerate() {
             model.forget();
-            let mut moves = shared_moves(axis, number, sizes).map_err(|damage| damage.of(0))?;
-            code_shared(model, level.get(), &mut moves, scale, sizes);
+            let mut moves = shared_moves(axis, number, 0..sizes).map_err(|damage| damage.of(0))?;
+            code_shared(model, level.get(), &mut moves, scale, 0..sizes).map_err(|damage| damage.of(0))?;
         }
     }
     for list in (0..outlines.lists()).filter_map(|number| outlines.list(number)) {

@@ -65,7 +65,7 @@ pub const SLOTS: usize = ELEMENTS.1;
 pub const MIXERS: usize = ELEMENTS.2;
 
 /// Contexts and bins of each element of outlines.
-const OUTLINE_BINARISATIONS: [([usize; 3], usize); 17] = [
+const OUTLINE_BINARISATIONS: [([usize; 3], usize); 18] = [
     ([1, 0, 0], 4),
     ([24, 24, 24], 1),
     ([6, 0, 0], 1),
@@ -83,6 +83,7 @@ const OUTLINE_BINARISATIONS: [([usize; 3], usize); 17] = [
     ([4, 0, 0], 12),
     ([9, 0, 0], 8),
     ([1, 0, 0], 4),
+    ([4, 0, 0], 12),
 ];
 
 /// The kind of a message.
@@ -120,6 +121,8 @@ pub const PART: Element = OUTLINE_ELEMENTS.0[14];
 pub const OUTLINE_GRID_OFFSET: Element = OUTLINE_ELEMENTS.0[15];
 /// Which hinted advance widths a composed glyph has.
 pub const ADVANCES: Element = OUTLINE_ELEMENTS.0[16];
+/// The bytes of a section of a message.
+pub const SECTION: Element = OUTLINE_ELEMENTS.0[17];
 
 /// The number of slots of outlines.
 pub const OUTLINE_SLOTS: usize = OUTLINE_ELEMENTS.1;

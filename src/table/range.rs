@@ -24,6 +24,33 @@ pub trait Coder {
         false
     }
 
+    /// Begins a section of the message: a writer keeps its bytes for the end of the message.
+    fn begin_section(&mut self) {}
+
+    /// Ends the section, and gives its length in bytes.
+    fn end_section(&mut self) -> usize {
+        0
+    }
+
+    /// Goes on with a section of the message, counted from 0, if this is a reader: `lengths` has the bytes of all sections but
+    /// the first.
+    ///
+    /// # Errors
+    ///
+    /// `Early` for sections that are longer than the message.
+    fn enter_section(&mut self, _lengths: &[usize], _section: usize) -> Result<(), End> {
+        Ok(())
+    }
+
+    /// Checks that what is read ends here: the message, or the section that was entered.
+    ///
+    /// # Errors
+    ///
+    /// If the bins do not end where the bytes do.
+    fn check_end(&self) -> Result<(), End> {
+        Ok(())
+    }
+
     /// Is given the source of each probability: the contexts' slots, the stretched probability of each, and the mixer;
     /// `usize::MAX` if nothing was mixed.
     #[inline]
@@ -68,6 +95,19 @@ impl Interval {
     fn last(self) -> Option<u8> {
         (self.low > 0).then_some((self.low.saturating_add(0x00FF_FFFF) >> 24) as u8)
     }
+
+    /// The bytes that end what other bytes follow, so that whatever they are stays within the interval: as few as there can be,
+    /// and how many.
+    fn last_followed(self) -> ([u8; 4], usize) {
+        for count in 0..4 {
+            let rest = u32::MAX.checked_shr(8 * count).unwrap_or(0);
+            let start = (u64::from(self.low) + u64::from(rest)) & !u64::from(rest);
+            if start + u64::from(rest) <= u64::from(self.high) {
+                return ((start as u32).to_be_bytes(), count as usize);
+            }
+        }
+        (self.low.to_be_bytes(), 4)
+    }
 }
 
 /// Writes bins.
@@ -75,18 +115,29 @@ impl Interval {
 pub struct Encoder {
     interval: Interval,
     bytes: Vec<u8>,
+    /// The bytes of the sections that are ended.
+    sections: Option<Vec<u8>>,
+    /// What is coded outside of the section that is begun.
+    outside: Option<(Interval, Vec<u8>)>,
 }
 
 impl Encoder {
     /// An encoder that has written nothing.
     #[expect(clippy::new_without_default, reason = "an encoder is made to write, never as a placeholder")]
     pub fn new() -> Self {
-        Self { interval: Interval::WHOLE, bytes: Vec::new() }
+        Self { interval: Interval::WHOLE, bytes: Vec::new(), sections: None, outside: None }
     }
 
     /// The bytes of all bins.
     pub fn finish(mut self) -> Vec<u8> {
-        self.bytes.extend(self.interval.last());
+        match self.sections {
+            None => self.bytes.extend(self.interval.last()),
+            Some(sections) => {
+                let (last, count) = self.interval.last_followed();
+                self.bytes.extend(&last[..count]);
+                self.bytes.extend(sections);
+            }
+        }
         self.bytes
     }
 }
@@ -101,13 +152,31 @@ impl Coder for Encoder {
         }
         bit
     }
+
+    fn begin_section(&mut self) {
+        let interval = core::mem::replace(&mut self.interval, Interval::WHOLE);
+        self.outside = Some((interval, core::mem::take(&mut self.bytes)));
+    }
+
+    fn end_section(&mut self) -> usize {
+        let Some((interval, bytes)) = self.outside.take() else { return 0 };
+        let last = core::mem::replace(&mut self.interval, interval).last();
+        let mut section = core::mem::replace(&mut self.bytes, bytes);
+        section.extend(last);
+        self.sections.get_or_insert_default().extend(&section);
+        section.len()
+    }
 }
 
 /// Reads bins. Beyond the end of the bytes there are zeros.
 #[derive(Debug)]
 pub struct Decoder<'a> {
     interval: Interval,
+    message: &'a [u8],
+    /// The part of the message that is read.
     bytes: &'a [u8],
+    /// Whether sections follow it.
+    is_followed: bool,
     /// How many bytes are shifted out; four more are in `window`.
     consumed: usize,
     window: u32,
@@ -125,7 +194,14 @@ pub enum End {
 impl<'a> Decoder<'a> {
     /// A decoder at the beginning of a message.
     pub fn new(bytes: &'a [u8]) -> Self {
-        let mut decoder = Self { interval: Interval::WHOLE, bytes, consumed: 0, window: 0 };
+        let mut decoder = Self {
+            interval: Interval::WHOLE,
+            message: bytes,
+            bytes,
+            is_followed: false,
+            consumed: 0,
+            window: 0,
+        };
         decoder.window = (0..4).fold(0, |window, at| window << 8 | decoder.byte(at));
         decoder
     }
@@ -140,12 +216,7 @@ impl<'a> Decoder<'a> {
     ///
     /// If the bins do not end where the bytes do.
     pub fn finish(self) -> Result<(), End> {
-        let length = self.consumed + usize::from(self.interval.last().is_some());
-        match length.cmp(&self.bytes.len()) {
-            core::cmp::Ordering::Greater => Err(End::Early),
-            core::cmp::Ordering::Equal => Ok(()),
-            core::cmp::Ordering::Less => Err(End::Late),
-        }
+        self.check_end()
     }
 }
 
@@ -166,6 +237,35 @@ impl Coder for Decoder<'_> {
 
     fn is_exhausted(&self) -> bool {
         self.consumed > self.bytes.len()
+    }
+
+    fn enter_section(&mut self, lengths: &[usize], section: usize) -> Result<(), End> {
+        // Lengths are numbers of 32 bits, of which there are few.
+        let end = |lengths: &[usize]| self.message.len().checked_sub(lengths.iter().sum());
+        let begin = match section.checked_sub(1) {
+            None => Some(0),
+            Some(before) => end(lengths.get(before..).unwrap_or_default()),
+        };
+        let end = end(lengths.get(section..).unwrap_or_default());
+        let bytes = begin.zip(end).and_then(|(begin, end)| self.message.get(begin..end)).ok_or(End::Early)?;
+        if section == 0 {
+            (self.bytes, self.is_followed) = (bytes, true);
+        } else {
+            *self = Self { message: self.message, ..Self::new(bytes) };
+        }
+        Ok(())
+    }
+
+    fn check_end(&self) -> Result<(), End> {
+        let last = match self.is_followed {
+            true => self.interval.last_followed().1,
+            false => usize::from(self.interval.last().is_some()),
+        };
+        match (self.consumed + last).cmp(&self.bytes.len()) {
+            core::cmp::Ordering::Greater => Err(End::Early),
+            core::cmp::Ordering::Equal => Ok(()),
+            core::cmp::Ordering::Less => Err(End::Late),
+        }
     }
 }
 
@@ -223,6 +323,34 @@ mod tests {
             }
             bytes.push(0);
             prop_assert_eq!(decode(&bytes, &bins), (expected, Err(End::Late)));
+        }
+
+        #[test]
+        fn sections_are_read_without_each_other(
+            first in bins(), sections in prop::collection::vec(bins(), 1..4), at in any::<prop::sample::Index>(),
+        ) {
+            let mut encoder = Encoder::new();
+            let code = |coder: &mut Encoder, bins: &[(u32, bool)]| bins.iter().for_each(|(p, bit)| {
+                coder.bit(*p, *bit);
+            });
+            code(&mut encoder, &first);
+            let lengths: Vec<usize> = sections.iter().map(|section| {
+                encoder.begin_section();
+                code(&mut encoder, section);
+                encoder.end_section()
+            }).collect();
+            let message = encoder.finish();
+            let read = |section: usize, bins: &[(u32, bool)]| {
+                let mut decoder = Decoder::new(&message);
+                decoder.enter_section(&lengths, section).expect("a section");
+                let bits: Vec<bool> = bins.iter().map(|(p, _)| decoder.bit(*p, false)).collect();
+                (bits, decoder.check_end())
+            };
+            let bits = |bins: &[(u32, bool)]| bins.iter().map(|(_, bit)| *bit).collect::<Vec<bool>>();
+            prop_assert_eq!(read(0, &first), (bits(&first), Ok(())));
+            let at = at.index(sections.len());
+            prop_assert_eq!(read(at + 1, &sections[at]), (bits(&sections[at]), Ok(())));
+            prop_assert_eq!(Decoder::new(&message).enter_section(&[message.len(), 1], 1), Err(End::Early));
         }
     }
 }

@@ -107,13 +107,24 @@ pub struct Learner {
     gradients: Vec<[f64; 3]>,
     /// How often each mixer is used.
     mixed: Vec<f64>,
+    /// The bits of the section that was begun last.
+    bits: f64,
 }
 
 impl Coder for Learner {
     const WRITES: bool = true;
 
-    fn bit(&mut self, _probability: u32, bit: bool) -> bool {
+    fn bit(&mut self, probability: u32, bit: bool) -> bool {
+        self.bits += INFORMATION[if bit { probability } else { ONE - probability } as usize];
         bit
+    }
+
+    fn begin_section(&mut self) {
+        self.bits = 0.0;
+    }
+
+    fn end_section(&mut self) -> usize {
+        (self.bits / 8.0).ceil() as usize
     }
 
     fn observe(&mut self, slots: [usize; 3], stretched: [i32; 3], mix: usize, probability: u32, bit: bool) {
@@ -181,10 +192,11 @@ pub fn learn(
             all: vec![0.0; slots],
             gradients: vec![[0.0; 3]; mixers],
             mixed: vec![0.0; mixers],
+            bits: 0.0,
         };
         let mut model = ContextModel::new(learner, &Prior { slots: &probabilities, weights: &steps });
         code(&mut model)?;
-        let Learner { ones, all, gradients, mixed } = model.coder;
+        let Learner { ones, all, gradients, mixed, .. } = model.coder;
         for (weights, (gradients, uses)) in weights.iter_mut().zip(gradients.iter().zip(&mixed)) {
             let share = (MOST_MIXED / uses.max(1.0)).min(1.0);
             weights.iter_mut().zip(gradients).for_each(|(weight, by)| *weight += by * share);

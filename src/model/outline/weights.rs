@@ -1,6 +1,7 @@
 //! What hinting does to an outline, as it is stored.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::points::OutlinePoints;
 use crate::error::Damage;
@@ -31,6 +32,8 @@ pub struct AxisHints {
     pub levels: Vec<i16>,
     /// The track of each point, or [`UNTOUCHED`]. Empty if there are no tracks.
     pub track_of: Vec<u8>,
+    /// The index of the first size that `moves` has.
+    pub first_size: usize,
     /// For each size, for each track: how far it is from its scaled level, in 1/64 pixel.
     pub moves: Vec<i16>,
     /// Corrections, ascending by size, then point.
@@ -40,7 +43,9 @@ pub struct AxisHints {
 impl AxisHints {
     /// The moves of all tracks at a size.
     pub fn moves_at(&self, size: usize) -> &[i16] {
-        self.moves.get(size * self.levels.len()..(size + 1) * self.levels.len()).unwrap_or_default()
+        let tracks = self.levels.len();
+        let first = size.checked_sub(self.first_size).map(|at| at * tracks);
+        first.and_then(|first| self.moves.get(first..first + tracks)).unwrap_or_default()
     }
 
     /// The corrections at a size.
@@ -60,17 +65,18 @@ impl AxisHints {
 pub struct OutlineWeights {
     /// Hints along x and y.
     pub axes: [AxisHints; 2],
-    /// The hinted advance width at each size, in whole pixels less the scaled advance width, rounded.
+    /// The hinted advance width at each size, in whole pixels less the scaled advance width, rounded. 0 at sizes before those that
+    /// are decoded.
     pub advances: Vec<i8>,
 }
 
-/// A glyph's outline with its hints, ready to draw at the first `sizes` trained sizes.
+/// A glyph's outline with its hints, ready to draw at some trained sizes.
 #[derive(Debug, Clone)]
 pub struct OutlineModel {
     /// Units and sizes of the font's models.
     pub scale: Scale,
-    /// The sizes that are decoded.
-    pub sizes: usize,
+    /// The sizes that are decoded, counted from the smallest.
+    pub sizes: Range<usize>,
     /// The outline.
     pub points: OutlinePoints,
     /// The hints.
@@ -87,12 +93,13 @@ impl OutlineModel {
         points: OutlinePoints,
         weights: OutlineWeights,
         scale: Scale,
-        sizes: usize,
+        sizes: Range<usize>,
     ) -> Result<Self, Damage> {
         for (axis, coordinates) in weights.axes.iter().zip(&points.coordinates) {
             let tracks = axis.levels.len();
             let fits = tracks <= MAX_TRACKS
-                && axis.moves.len() == tracks * sizes
+                && axis.moves.len() == tracks * sizes.len()
+                && (tracks == 0 || axis.first_size == sizes.start)
                 && (axis.track_of.len() == points.len() || tracks == 0 && axis.track_of.is_empty());
             let level = |(track, at): (&u8, &i16)| {
                 *track == UNTOUCHED || axis.levels.get(usize::from(*track)) == Some(at)
@@ -110,7 +117,12 @@ impl OutlineModel {
 
     /// Whether the sizes that are decoded include the one with this index.
     pub fn has_size(&self, index: usize) -> bool {
-        index < self.sizes
+        self.sizes.contains(&index)
+    }
+
+    /// Whether the sizes that are decoded include those with these indices.
+    pub fn has_sizes(&self, indices: &Range<usize>) -> bool {
+        self.sizes.start <= indices.start && indices.end <= self.sizes.end
     }
 
     /// The memory that the model takes, in bytes.

@@ -2,8 +2,10 @@
 //! offsets. Writing and reading are the same functions. `spec/nfrt.md` describes the order.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::positions::{self, Axis, Choose, Referred};
+use super::sections::{self, Owner};
 use super::shared::{Shared, Source};
 use super::structure;
 use crate::error::Damage;
@@ -51,23 +53,24 @@ pub fn encode(
     choose: Choose<'_>,
 ) -> Result<Vec<u8>, Damage> {
     let mut model = ContextModel::new(Encoder::new(), &OUTLINE_PRIOR);
-    code(&mut model, known, weights, &mut sources.clone(), known.scale.sizes(), choose)?;
+    code(&mut model, known, weights, &mut sources.clone(), 0..known.scale.sizes(), choose)?;
     Ok(model.coder.finish())
 }
 
-/// Decodes the hints of a glyph at the first so many sizes, and where its tracks come from.
+/// Decodes the hints of a glyph at some sizes, the first of which begins a section, and where its tracks come from.
 ///
 /// # Errors
 ///
 /// `Stale` if they are not those of this outline; `Malformed` for bytes that end early or contradict themselves, `TooLarge` for
 /// more than the format allows.
-pub fn decode(bytes: &[u8], known: &Known<'_>, sizes: usize) -> Result<(OutlineWeights, Sources), Damage> {
+pub fn decode(
+    bytes: &[u8],
+    known: &Known<'_>,
+    sizes: Range<usize>,
+) -> Result<(OutlineWeights, Sources), Damage> {
     let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
     let (mut weights, mut sources) = (OutlineWeights::default(), Sources::default());
     code(&mut model, known, &mut weights, &mut sources, sizes, &mut |_| 0)?;
-    if sizes == known.scale.sizes() {
-        model.coder.finish().map_err(malformed_end)?;
-    }
     Ok((weights, sources))
 }
 
@@ -89,7 +92,7 @@ pub(super) fn raw<C: Coder>(model: &mut ContextModel<'_, C>, value: u16) -> u16 
     })
 }
 
-/// Codes a glyph's hints at the first so many sizes. A reader's `weights` and `sources` are empty.
+/// Codes a glyph's hints at some sizes, a writer at all of them. A reader's `weights` and `sources` are empty.
 ///
 /// # Errors
 ///
@@ -99,7 +102,7 @@ pub fn code<C: Coder>(
     known: &Known<'_>,
     weights: &mut OutlineWeights,
     sources: &mut Sources,
-    sizes: usize,
+    sizes: Range<usize>,
     choose: Choose<'_>,
 ) -> Result<(), Damage> {
     let Known { points, scale, .. } = *known;
@@ -115,11 +118,12 @@ pub fn code<C: Coder>(
         if model.flag(UNUSUAL, [axis, 0, 0], !hints.levels.is_empty()) {
             structure::code(model, points, scale.units_per_em(), axis, hints, sources, &known.shared)?;
             check_moves(hints.levels.len(), scale)?;
-            hints.moves.resize(hints.levels.len() * sizes, 0);
+            hints.first_size = sizes.start;
+            hints.moves.resize(hints.levels.len() * sizes.len(), 0);
         }
     }
     let has_advances = model.flag(UNUSUAL, [2, 0, 0], advances.iter().any(|advance| *advance != 0));
-    advances.resize(if has_advances { sizes } else { 0 }, 0);
+    advances.resize(if has_advances { sizes.end } else { 0 }, 0);
     let mut corrected = [0, 1].map(|axis| Corrections::new(axis, &axes[axis], points.len(), C::WRITES));
     for axis in &mut corrected {
         axis.is_used = model.flag(UNUSUAL, [3 + axis.axis, 0, 0], axis.is_used);
@@ -134,27 +138,38 @@ pub fn code<C: Coder>(
     for (hints, corrected) in axes.iter_mut().zip(&corrected) {
         hints.is_hinted = !hints.levels.is_empty() || corrected.is_used;
     }
-    let tracks =
-        |axis: usize| Ok::<_, Damage>(Axis::new(axis, shared_moves(known, axis, &sources[axis], sizes)?));
-    let mut tracks = [tracks(0)?, tracks(1)?];
-    let mut before = [0; 2];
-    for (size, scale) in positions::scales(scale).take(sizes).enumerate() {
-        model.check()?;
-        for axis in [1, 0] {
-            let AxisHints { levels, moves, .. } = &mut axes[axis];
-            let Some(moves) = moves.get_mut(size * levels.len()..(size + 1) * levels.len()) else { continue };
-            tracks[axis].code(model, size, scale, levels, moves, choose);
+    let referred = [0, 1].map(|axis| shared_moves(known, axis, &sources[axis], sizes.clone()));
+    let [x, y] = referred;
+    let referred = [x?, y?];
+    let is_coded = has_advances
+        || corrected.iter().any(|axis| axis.is_used)
+        || referred.iter().flatten().any(|track| track.is_coded);
+    let message = (Owner::Glyph, is_coded);
+    sections::code(model, message, scale.sizes(), sizes.clone(), |model, section| {
+        let mut tracks = [0, 1].map(|axis| Axis::new(axis, &referred[axis], sizes.start));
+        corrected.iter_mut().for_each(Corrections::restart);
+        let mut before = [0; 2];
+        for size in section {
+            model.check()?;
+            let scale = scale_at(scale, size);
+            for axis in [1, 0] {
+                let AxisHints { levels, moves, .. } = &mut axes[axis];
+                let at = (size - sizes.start) * levels.len();
+                let Some(moves) = moves.get_mut(at..at + levels.len()) else { continue };
+                tracks[axis].code(model, size, scale, levels, moves, choose);
+            }
+            if let Some(advance) = advances.get_mut(size) {
+                let context = advance_context(known.advance, scale, &axes[0], size, before);
+                let step = model.signed(ADVANCE, [context, 0, 0], i32::from(*advance) - before[0]);
+                *advance = before[0].wrapping_add(step) as i8;
+                before = [(*advance).into(), before[0]];
+            }
+            for corrected in &mut corrected {
+                corrected.code(model, size, &mut axes[corrected.axis])?;
+            }
         }
-        if let Some(advance) = advances.get_mut(size) {
-            let context = advance_context(known.advance, scale, &axes[0], size, before);
-            let step = model.signed(ADVANCE, [context, 0, 0], i32::from(*advance) - before[0]);
-            *advance = before[0].wrapping_add(step) as i8;
-            before = [(*advance).into(), before[0]];
-        }
-        for corrected in &mut corrected {
-            corrected.code(model, size, &mut axes[corrected.axis])?;
-        }
-    }
+        Ok(())
+    })?;
     for (axis, corrected) in axes.iter_mut().zip(corrected) {
         if !C::WRITES {
             axis.corrections = corrected.list;
@@ -175,10 +190,10 @@ fn shared_moves(
     known: &Known<'_>,
     axis: usize,
     sources: &[Source],
-    sizes: usize,
+    sizes: Range<usize>,
 ) -> Result<Vec<Referred>, Damage> {
     let referred = |number: usize, is_coded: bool| {
-        Ok(Referred { moves: Some((known.shared.moves)(axis, number, sizes)?), is_coded })
+        Ok(Referred { moves: Some((known.shared.moves)(axis, number, sizes.clone())?), is_coded })
     };
     let moves = |source: &Source| match *source {
         Source::Own => Ok(Referred::default()),
@@ -216,6 +231,12 @@ impl Corrections {
     fn new(axis: usize, hints: &AxisHints, points: usize, writes: bool) -> Self {
         let is_used = writes && !hints.corrections.is_empty();
         Self { axis, is_used, before: Vec::new(), any_before: false, list: Vec::new(), points }
+    }
+
+    /// Forgets the size before.
+    fn restart(&mut self) {
+        self.any_before = false;
+        self.before.fill(0);
     }
 
     fn code<C: Coder>(
@@ -264,36 +285,45 @@ impl Corrections {
 }
 
 /// Encodes the moves of a shared track.
-pub fn encode_shared(level: i16, moves: &[i16], scale: Scale) -> Vec<u8> {
+pub fn encode_shared(level: i16, moves: &[i16], scale: Scale) -> Result<Vec<u8>, Damage> {
     let mut model = ContextModel::new(Encoder::new(), &OUTLINE_PRIOR);
-    code_shared(&mut model, level, &mut moves.to_vec(), scale, scale.sizes());
-    model.coder.finish()
+    code_shared(&mut model, level, &mut moves.to_vec(), scale, 0..scale.sizes())?;
+    Ok(model.coder.finish())
 }
 
-/// Codes the moves of a shared track at the first so many sizes; a reader's `moves` are empty.
+/// Codes the moves of a shared track at some sizes, a writer at all of them; a reader's `moves` are empty.
+///
+/// # Errors
+///
+/// As [`decode_shared`].
 pub fn code_shared<C: Coder>(
     model: &mut ContextModel<'_, C>,
     level: i16,
     moves: &mut Vec<i16>,
     scale: Scale,
-    sizes: usize,
-) {
-    positions::code_shared(model, level, positions::scales(scale).take(sizes), moves);
+    sizes: Range<usize>,
+) -> Result<(), Damage> {
+    sections::code(model, (Owner::SharedTrack, true), scale.sizes(), sizes, |model, section| {
+        let scales = section.map(|size| (size, scale_at(scale, size)));
+        positions::code_shared(model, level, scales, moves);
+        model.check()
+    })
 }
 
-/// Decodes the moves of a shared track at the first so many sizes.
+/// Decodes the moves of a shared track at some sizes, the first of which begins a section.
 ///
 /// # Errors
 ///
 /// `Malformed` for bytes that end early or late.
-pub fn decode_shared(bytes: &[u8], level: i16, scale: Scale, sizes: usize) -> Result<Vec<i16>, Damage> {
+pub fn decode_shared(
+    bytes: &[u8],
+    level: i16,
+    scale: Scale,
+    sizes: Range<usize>,
+) -> Result<Vec<i16>, Damage> {
     let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
-    let mut moves = Vec::with_capacity(sizes);
-    code_shared(&mut model, level, &mut moves, scale, sizes);
-    model.check()?;
-    if sizes == scale.sizes() {
-        model.coder.finish().map_err(malformed_end)?;
-    }
+    let mut moves = Vec::with_capacity(sizes.len());
+    code_shared(&mut model, level, &mut moves, scale, sizes)?;
     Ok(moves)
 }
 

@@ -5,6 +5,7 @@ mod index;
 mod parts;
 mod positions;
 mod rules;
+mod sections;
 mod shared;
 mod structure;
 
@@ -12,4 +13,5 @@ pub use codec::*;
 pub use index::{OutlineIndex, pack};
 pub use parts::*;
 pub use positions::{Choose, Price, Question};
+pub use sections::sizes_for;
 pub use shared::{Shared, Source};

@@ -4,7 +4,6 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::rules::{Candidate, Neighbours, Ranked, Scores, View, coding_order, to_grid};
-use crate::model::outline::scale_of;
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
 use crate::table::elements::{HIT, MISS_FRACTION, MISS_PIXELS};
@@ -47,7 +46,7 @@ pub struct Question<'q> {
 pub type Choose<'c> = &'c mut dyn FnMut(&Question<'_>) -> i32;
 
 /// The tracks of an axis while their positions are coded.
-pub(super) struct Axis {
+pub(super) struct Axis<'r> {
     axis: usize,
     /// In the order in which they are coded.
     tracks: Vec<Track>,
@@ -56,6 +55,9 @@ pub(super) struct Axis {
     /// The hinted positions at the size before.
     before: Vec<i32>,
     is_first: bool,
+    /// What each track refers to, and the first size of the moves there.
+    referred: &'r [Referred],
+    first_size: usize,
     /// Working memory.
     ranked: Ranked,
 }
@@ -67,22 +69,22 @@ struct Track {
     scores: Scores,
     /// Whether the first candidate was wrong at each of the last sizes, the last one lowest.
     misses: u8,
-    shared: Referred,
 }
 
-impl Axis {
-    /// Tracks at the first size, with the shared track that each refers to.
-    pub(super) fn new(axis: usize, mut shared: Vec<Referred>) -> Self {
-        let count = shared.len();
+impl<'r> Axis<'r> {
+    /// Tracks at the first size of a section, with what each refers to; the moves there begin with the size number `first_size`.
+    pub(super) fn new(axis: usize, referred: &'r [Referred], first_size: usize) -> Self {
+        let count = referred.len();
         let track = |(number, neighbours): (usize, Neighbours)| Track {
             number,
             neighbours,
             scores: Scores::new(neighbours.kind()),
             misses: 0,
-            shared: shared.get_mut(number).map(core::mem::take).unwrap_or_default(),
         };
         Self {
             axis,
+            referred,
+            first_size,
             tracks: coding_order(count).into_iter().map(track).collect(),
             plain: vec![0; count],
             hinted: vec![0; count],
@@ -110,8 +112,9 @@ impl Axis {
         for track in &mut self.tracks {
             let number = track.number;
             let plain = self.plain[number];
-            let shared = track.shared.moves.as_ref().and_then(|moves| moves.get(size)).copied();
-            if !track.shared.is_coded {
+            let Referred { moves: shared, is_coded } = &self.referred[number];
+            let shared = shared.as_ref().and_then(|moves| moves.get(size - self.first_size)).copied();
+            if !is_coded {
                 moves[number] = shared.unwrap_or(0);
             } else {
                 let before = (!self.is_first).then_some(&*self.before);
@@ -312,37 +315,26 @@ fn price<C: Coder>(
     model.visit_signed(MISS_FRACTION, miss_fraction_context(first, pixels, state), fraction, visit);
 }
 
-/// Codes the moves of a shared track, which has no neighbours.
+/// Codes the moves of a shared track, which has no neighbours, at the sizes of a section, each with its number and its scale.
 pub(super) fn code_shared<C: Coder>(
     model: &mut ContextModel<'_, C>,
     level: i16,
-    scales: impl Iterator<Item = i32>,
+    sizes: impl Iterator<Item = (usize, i32)>,
     moves: &mut Vec<i16>,
 ) {
-    let mut track = Track {
-        number: 0,
-        neighbours: Neighbours::default(),
-        scores: Scores::new(0),
-        misses: 0,
-        shared: Referred::default(),
-    };
-    let (mut before, mut ranked) = ([0], Ranked::default());
-    for (size, scale) in scales.enumerate() {
+    let mut track =
+        Track { number: 0, neighbours: Neighbours::default(), scores: Scores::new(0), misses: 0 };
+    let (mut before, mut ranked) = (None, Ranked::default());
+    for (size, scale) in sizes {
         let plain = [mul_fixed(level.into(), scale)];
-        let before_it = (size > 0).then_some(&before[..]);
-        let view = View { levels: &[level], plain: &plain, hinted: &[0], before: before_it };
+        let view = View { levels: &[level], plain: &plain, hinted: &[0], before: before.as_ref().map(<[i32; 1]>::as_slice) };
         let at = At { axis: 0, size, missed: 0, shared: None };
         let wanted = moves.get(size).copied().unwrap_or(0);
         let (moved, _) =
             track.code(model, &view, at, &mut ranked, wanted, &mut |question| question.wanted.into());
-        before = [plain[0].wrapping_add(moved.into())];
+        before = Some([plain[0].wrapping_add(moved.into())]);
         if !C::WRITES {
             moves.push(moved);
         }
     }
-}
-
-/// The scale of each trained size.
-pub(super) fn scales(scale: crate::model::sizes::Scale) -> impl Iterator<Item = i32> {
-    (0..scale.sizes()).map(move |size| scale_of(scale.ppem_of(size) as f32, scale.units_per_em()))
 }

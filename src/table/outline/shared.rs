@@ -26,8 +26,8 @@ pub enum Source {
 pub struct Shared<'a> {
     /// Their levels, ascending.
     pub levels: [&'a [BigEndian<i16>]; 2],
-    /// Gives the moves of a shared track, by its axis and its number, at the first so many sizes.
-    pub moves: &'a dyn Fn(usize, usize, usize) -> Result<Vec<i16>, Damage>,
+    /// Gives the moves of a shared track, by its axis and its number, at some sizes.
+    pub moves: &'a dyn Fn(usize, usize, Range<usize>) -> Result<Vec<i16>, Damage>,
 }
 
 impl Shared<'_> {

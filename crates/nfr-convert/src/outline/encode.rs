@@ -1,5 +1,7 @@
 //! Encoding all outline models of a font.
 
+use std::ops::Range;
+
 use nfr::internals::model::gridfit::Scale;
 use nfr::internals::model::outline::OutlineWeights;
 use nfr::internals::table::BigEndian;
@@ -40,7 +42,7 @@ pub(crate) fn encode(
     let all: Vec<(&(OutlineSamples, u16), &FittedOutline)> = glyphs.iter().zip(&*outlines).collect();
     let encoded = parallel::map(&all, jobs, |((samples, advance), outline)| {
         let moves =
-            |axis: usize, number: usize, sizes: usize| Ok(shared[axis].0[number].moves[..sizes].to_vec());
+            |axis: usize, number: usize, sizes: Range<usize>| Ok(shared[axis].0[number].moves[sizes].to_vec());
         let known = Known {
             points: &samples.points,
             advance: *advance,
@@ -70,12 +72,13 @@ pub(crate) fn encode(
         outline.weights = weights;
         messages.push(bytes);
     }
-    let shared = shared.map(|tracks| {
-        let message =
-            |t: super::sharing::SharedTrack| (t.level, outline::encode_shared(t.level, &t.moves, scale));
-        tracks.0.into_iter().map(message).collect()
+    let [x, y] = shared.map(|tracks| {
+        let message = |t: super::sharing::SharedTrack| {
+            Ok::<_, Error>((t.level, outline::encode_shared(t.level, &t.moves, scale)?))
+        };
+        tracks.0.into_iter().map(message).collect::<Result<Vec<_>, Error>>()
     });
-    Ok(EncodedOutlines { glyphs: messages, shared })
+    Ok(EncodedOutlines { glyphs: messages, shared: [x?, y?] })
 }
 
 /// A glyph's message, and the weights that it has.

@@ -188,6 +188,7 @@ fn hints(samples: &OutlineSamples, clusters: &[Cluster], chosen: &[bool]) -> Axi
     }
     AxisHints {
         is_hinted: true,
+        first_size: 0,
         levels: chosen.iter().map(|cluster| cluster.level).collect(),
         track_of,
         moves: (0..samples.sizes()).flat_map(|size| chosen.iter().map(move |c| c.moves[size])).collect(),

@@ -91,7 +91,7 @@ fn find(stages: &Stages<'_>, font: &Font, glyphs: &Decomposition) -> Result<Foun
     let encoded = encode(&samples, &mut outlines, scale, options.fidelity, options.jobs)?;
     let mut models = BTreeMap::new();
     for ((gid, (samples, _)), FittedOutline { weights, .. }) in gids.iter().zip(samples).zip(outlines) {
-        models.insert(*gid, Arc::new(OutlineModel::new(samples.points, weights, scale, scale.sizes())?));
+        models.insert(*gid, Arc::new(OutlineModel::new(samples.points, weights, scale, 0..scale.sizes())?));
     }
     let mut composed = Vec::new();
     for glyph in &glyphs.composed {

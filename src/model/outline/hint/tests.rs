@@ -108,12 +108,13 @@ fn stem() -> OutlineModel {
     let y = AxisHints {
         is_hinted: true,
         levels: vec![0, 250],
+        first_size: 0,
         track_of: vec![0, 1, 1, 0],
         moves: vec![0, 32, 0, 16],
         corrections: vec![Correction { size: 1, point: 3, by: -5 }],
     };
     let weights = OutlineWeights { axes: [AxisHints::default(), y], ..OutlineWeights::default() };
-    OutlineModel::new(points, weights, scale, 2).unwrap()
+    OutlineModel::new(points, weights, scale, 0..2).unwrap()
 }
 
 fn hinted(model: &OutlineModel, ppem: f32) -> [Vec<i32>; 2] {
@@ -139,10 +140,22 @@ fn a_size_between_has_the_hints_of_the_nearest_and_its_own_width() {
 }
 
 #[test]
+fn sizes_are_counted_from_the_first_that_is_decoded() {
+    let mut model = stem();
+    let expected = hinted(&model, 11.0);
+    model.sizes = 1..2;
+    model.weights.axes[1].first_size = 1;
+    model.weights.axes[1].moves.drain(..2);
+    assert_eq!(hinted(&model, 11.0), expected);
+    // Points are where the scale puts them at a size that is not decoded.
+    assert_eq!(hinted(&model, 10.0)[1], [0, 160, 160, 0]);
+}
+
+#[test]
 fn a_size_that_was_not_trained_or_not_decoded_is_only_scaled() {
     let mut model = stem();
     assert_eq!(hinted(&model, 20.0)[1], [0, 320, 320, 0]);
-    model.sizes = 1;
+    model.sizes = 0..1;
     model.weights.axes[1].moves.truncate(2);
     assert_eq!(hinted(&model, 11.0)[1], [0, 176, 176, 0]);
     assert_eq!(hinted(&model, 10.0)[1], [0, 192, 192, 0]);
