@@ -7,7 +7,7 @@ use core::ops::Range;
 
 use super::font::Font;
 use super::glyph::{Drawn, Glyph, Outlines, SharedModel};
-use super::shared_tracks::SharedTracks;
+use super::stored_outline::Memory;
 use crate::error::Error;
 use crate::limits::Limits;
 use crate::model::compose::{Origin, Part};
@@ -23,14 +23,14 @@ pub struct Decoder {
     limits: Limits,
     /// The offsets that the parts of composed glyphs share; decoded with the first composed glyph.
     offsets: Option<Vec<i8>>,
-    /// The tracks that outlines share.
-    tracks: SharedTracks,
+    /// What outlines share.
+    memory: Memory,
 }
 
 impl Decoder {
     /// A decoder for a font's glyphs.
     pub fn new(font: &Font, limits: Limits) -> Self {
-        Self { font: font.clone(), limits, offsets: None, tracks: SharedTracks::default() }
+        Self { font: font.clone(), limits, offsets: None, memory: Memory::default() }
     }
 
     /// The font whose glyphs are decoded.
@@ -69,12 +69,12 @@ impl Decoder {
         }
         let (table, scale, limits) = (self.font.table()?, self.font.scale(), self.limits);
         table.check_glyph(glyph)?;
-        let (font, tracks) = (&self.font, &mut self.tracks);
+        let (font, memory) = (&self.font, &mut self.memory);
         let mut outline = |part: u32| match known(part) {
             Some(SharedModel::Outline(model)) if model.has_sizes(&sizes) && !table.is_composed(part) => {
                 Ok(model)
             }
-            _ => font.outline_model(part, sizes.clone(), &limits, tracks).map(Arc::new),
+            _ => font.outline_model(part, sizes.clone(), &limits, memory).map(Arc::new),
         };
         let model = |part: u32| match known(part) {
             Some(SharedModel::Field(model)) => Ok(model),

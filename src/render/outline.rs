@@ -21,21 +21,21 @@ use crate::number::{UNIT, UNIT_BITS, round};
 use crate::options::DrawOptions;
 use crate::placement::Placement;
 
-/// The outline of a glyph of a font.
+/// Reads the outline of a glyph of a font into `points`.
 ///
 /// # Errors
 ///
 /// `NoSuchGlyph`, `MalformedOutline`.
-pub(super) fn outline_points(font: &Font, glyph: u32) -> Result<OutlinePoints, Error> {
+pub(super) fn read_outline(font: &Font, glyph: u32, points: &mut OutlinePoints) -> Result<(), Error> {
     if glyph >= font.glyph_count() {
         return Err(Error::NoSuchGlyph(glyph));
     }
     // A blank glyph has an entry, too: no entry means that the outline cannot be read.
     let outline = font.model().outline_glyphs().get(GlyphId::new(glyph));
     let outline = outline.ok_or(Error::MalformedOutline(glyph))?;
-    let mut points = OutlinePoints::default();
-    outline.draw_unscaled(DrawMemory::default(), &mut points).map_err(|_| Error::MalformedOutline(glyph))?;
-    if points.is_unfit { Err(Error::MalformedOutline(glyph)) } else { Ok(points) }
+    points.clear();
+    outline.draw_unscaled(DrawMemory::default(), points).map_err(|_| Error::MalformedOutline(glyph))?;
+    if points.is_unfit { Err(Error::MalformedOutline(glyph)) } else { Ok(()) }
 }
 
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.
@@ -48,7 +48,8 @@ pub(super) fn draw_plain<'b>(
     room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
 ) -> Result<Option<Placement>, Error> {
     let options = options.checked()?;
-    let points = outline_points(font, glyph)?;
+    let mut points = OutlinePoints::default();
+    read_outline(font, glyph, &mut points)?;
     let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0..0);
     let model = model.map_err(|damage| damage.of(glyph))?;
     let size = HintedSize { strength: 0.0, ..font.scale().at(options.ppem) };

@@ -12,6 +12,8 @@ const KEPT: usize = 64;
 #[derive(Debug, Default)]
 pub(super) struct SharedTracks {
     places: Vec<Option<Kept>>,
+    /// Working memory of decoding one.
+    memory: Vec<u16>,
 }
 
 #[derive(Debug, Clone)]
@@ -23,7 +25,8 @@ struct Kept {
 }
 
 impl SharedTracks {
-    /// The moves of a shared track along an axis at some sizes, which `decode` gives if they are not kept.
+    /// The moves of a shared track along an axis at some sizes, which `decode` gives if they are not kept: it is lent
+    /// working memory.
     ///
     /// # Errors
     ///
@@ -33,7 +36,7 @@ impl SharedTracks {
         axis: usize,
         number: usize,
         sizes: Range<usize>,
-        decode: impl FnOnce() -> Result<Vec<i16>, Damage>,
+        decode: impl FnOnce(&mut Vec<u16>) -> Result<Vec<i16>, Damage>,
     ) -> Result<Vec<i16>, Damage> {
         if self.places.is_empty() {
             self.places.resize(KEPT, None);
@@ -45,7 +48,7 @@ impl SharedTracks {
         {
             return Ok(moves.to_vec());
         }
-        let moves = decode()?;
+        let moves = decode(&mut self.memory)?;
         *place = Some(Kept { axis, number, first_size: sizes.start, moves: moves.clone() });
         Ok(moves)
     }

@@ -10,12 +10,12 @@ use read_fonts::tables::glyf::{Anchor, CompositeGlyphFlags, Glyph};
 use read_fonts::tables::loca::Loca;
 
 use super::font::Font;
-use super::outline::outline_points;
+use super::outline::read_outline;
 use super::shared_tracks::SharedTracks;
 use crate::error::{Damage, Error};
 use crate::limits::Limits;
 use crate::model::compose::Part;
-use crate::model::outline::OutlineModel;
+use crate::model::outline::{OutlineModel, OutlinePoints};
 use crate::table::MAX_PARTS;
 use crate::table::context_model::ContextModel;
 use crate::table::outline::{
@@ -27,6 +27,15 @@ use crate::table::range::Coder;
 /// The deepest nesting of components. `maxp` allows 16; fonts have two or three.
 const MAX_DEPTH: usize = 16;
 
+/// What is kept from one glyph to the next.
+#[derive(Debug, Default)]
+pub(super) struct Memory {
+    tracks: SharedTracks,
+    /// Working memory.
+    points: OutlinePoints,
+    slots: Vec<u16>,
+}
+
 impl Font {
     /// Decodes the outline model of a glyph at some sizes.
     pub(super) fn outline_model(
@@ -34,21 +43,22 @@ impl Font {
         glyph: u32,
         sizes: Range<usize>,
         limits: &Limits,
-        tracks: &mut SharedTracks,
+        memory: &mut Memory,
     ) -> Result<OutlineModel, Error> {
         let table = self.table()?;
         let (outlines, scale) = (*table.outlines(), self.scale());
         let message = outlines.glyph(glyph)?;
-        let mut points = outline_points(self, glyph)?;
-        points.shrink();
-        let tracks = RefCell::new(tracks);
+        read_outline(self, glyph, &mut memory.points)?;
+        let points = memory.points.clone();
+        let tracks = RefCell::new(&mut memory.tracks);
         let moves = |axis: usize, number: usize, sizes: Range<usize>| {
-            let decode = || self.shared_moves(&outlines, axis, number, sizes.clone());
+            let decode =
+                |memory: &mut Vec<u16>| self.shared_moves(&outlines, axis, number, sizes.clone(), memory);
             tracks.borrow_mut().moves(axis, number, sizes.clone(), decode)
         };
         let shared = Shared { levels: outlines.levels(), moves: &moves };
         let known = Known { points: &points, advance: self.advance_units(glyph), scale, shared };
-        let (weights, _) = decode(message, &known, sizes.clone()).map_err(|damage| damage.of(glyph))?;
+        let (weights, _) = decode(message, &known, sizes.clone(), &mut memory.slots).map_err(|damage| damage.of(glyph))?;
         let model = OutlineModel::new(points, weights, scale, sizes).map_err(|damage| damage.of(glyph))?;
         limits.check_decoded(glyph, model.memory())?;
         Ok(model)
@@ -82,11 +92,12 @@ impl Font {
         axis: usize,
         number: usize,
         sizes: Range<usize>,
+        memory: &mut Vec<u16>,
     ) -> Result<Vec<i16>, Damage> {
         let level = outlines.levels()[axis].get(number).map(|level| level.get());
         let message = level.zip(outlines.shared(axis, number));
         let (level, bytes) = message.ok_or(Damage::Malformed("has a track outside the table"))?;
-        decode_shared(bytes, level, self.scale(), sizes)
+        decode_shared(bytes, level, self.scale(), sizes, memory)
     }
 
     /// What a composite glyph of `glyf` consists of.
@@ -112,7 +123,9 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     let (outlines, scale) = (*table.outlines(), font.scale());
     let sizes = scale.sizes();
     let shared_moves =
-        |axis: usize, number: usize, sizes: Range<usize>| font.shared_moves(&outlines, axis, number, sizes);
+        |axis: usize, number: usize, sizes: Range<usize>| {
+            font.shared_moves(&outlines, axis, number, sizes, &mut Vec::new())
+        };
     let shared = Shared { levels: outlines.levels(), moves: &shared_moves };
     for glyph in table.gids().map(u32::from).filter(|glyph| outlines.find(*glyph).is_some()) {
         model.forget();
@@ -125,9 +138,10 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
                 Ok(())
             })
         } else {
-            let points = outline_points(font, glyph)?;
+            let mut points = OutlinePoints::default();
+            read_outline(font, glyph, &mut points)?;
             let known = Known { points: &points, advance: font.advance_units(glyph), scale, shared };
-            decode(message, &known, 0..sizes).and_then(|(mut weights, mut sources)| {
+            decode(message, &known, 0..sizes, &mut Vec::new()).and_then(|(mut weights, mut sources)| {
                 code(model, &known, &mut weights, &mut sources, 0..sizes, &mut |question| question.wanted.into())
             })
         };

@@ -27,7 +27,19 @@ pub struct ContextModel<'p, C> {
 impl<'p, C: Coder> ContextModel<'p, C> {
     /// A model in its initial state.
     pub fn new(coder: C, prior: &Prior<'p>) -> Self {
-        Self { coder, prior: *prior, slots: prior.slots.to_vec() }
+        Self::with_memory(coder, prior, Vec::new())
+    }
+
+    /// The same, in memory that another model leaves.
+    pub(super) fn with_memory(coder: C, prior: &Prior<'p>, mut slots: Vec<u16>) -> Self {
+        slots.clear();
+        slots.extend_from_slice(prior.slots);
+        Self { coder, prior: *prior, slots }
+    }
+
+    /// The model's memory, for another one.
+    pub(super) fn into_memory(self) -> Vec<u16> {
+        self.slots
     }
 
     /// Goes back to the initial state, for another message.

@@ -1,8 +1,9 @@
 //! The initial state of context models: probabilities and mixer weights trained on fonts, kept in `spec/priors.txt` and
 //! `spec/outline-priors.txt`.
 
-use super::elements::{MIXERS, OUTLINE_MIXERS, OUTLINE_SLOTS, SLOTS};
+use super::elements::{Element, MIXERS, OUTLINE_MIXERS, OUTLINE_SLOTS, SLOTS};
 use super::logistic::squash;
+use super::range::ONE;
 
 /// The initial probability of each slot and the weights of each mixer.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +12,13 @@ pub struct Prior<'a> {
     pub slots: &'a [u16],
     /// The weights of each mixer, in 1/32.
     pub weights: &'a [[u8; 3]],
+}
+
+impl Prior<'_> {
+    /// The initial probability of a slot of an element, in 1/4096.
+    pub(super) fn probability(&self, element: Element, slot: usize) -> u32 {
+        u32::from(self.slots[element.first_slot + slot] >> 4).clamp(1, ONE - 1)
+    }
 }
 
 /// The first of the 64 characters.

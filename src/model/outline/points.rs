@@ -54,11 +54,12 @@ impl OutlinePoints {
         self.len() * (2 * size_of::<i16>() + size_of::<bool>()) + self.ends.len() * size_of::<u16>()
     }
 
-    /// Gives memory back that is not used.
-    pub fn shrink(&mut self) {
-        self.coordinates.iter_mut().for_each(Vec::shrink_to_fit);
-        self.on_curve.shrink_to_fit();
-        self.ends.shrink_to_fit();
+    /// Removes all points, and keeps their memory.
+    pub fn clear(&mut self) {
+        self.coordinates.iter_mut().for_each(Vec::clear);
+        self.on_curve.clear();
+        self.ends.clear();
+        self.is_unfit = false;
     }
 }
 

@@ -57,7 +57,8 @@ pub fn encode(
     Ok(model.coder.finish())
 }
 
-/// Decodes the hints of a glyph at some sizes, the first of which begins a section, and where its tracks come from.
+/// Decodes the hints of a glyph at some sizes, the first of which begins a section, and where its tracks come from. `memory` is
+/// working memory.
 ///
 /// # Errors
 ///
@@ -67,17 +68,22 @@ pub fn decode(
     bytes: &[u8],
     known: &Known<'_>,
     sizes: Range<usize>,
+    memory: &mut Vec<u16>,
 ) -> Result<(OutlineWeights, Sources), Damage> {
-    let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
+    let mut model = ContextModel::with_memory(Decoder::new(bytes), &OUTLINE_PRIOR, core::mem::take(memory));
     let (mut weights, mut sources) = (OutlineWeights::default(), Sources::default());
-    code(&mut model, known, &mut weights, &mut sources, sizes, &mut |_| 0)?;
-    Ok((weights, sources))
+    let decoded = code(&mut model, known, &mut weights, &mut sources, sizes, &mut |_| 0);
+    *memory = model.into_memory();
+    decoded.map(|()| (weights, sources))
 }
 
 /// Whether a message is that of a composed glyph.
 pub fn is_composed(bytes: &[u8]) -> bool {
-    let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
-    model.bits(MESSAGE, 0, 2, 0) == COMPOSED
+    // The kind is the first thing in a message, so that the initial probabilities do.
+    let mut coder = Decoder::new(bytes);
+    let mut bit = |known: usize| coder.bit(OUTLINE_PRIOR.probability(MESSAGE, known), false);
+    let high = usize::from(bit(1));
+    2 * high + usize::from(bit(2 + high)) == COMPOSED
 }
 
 /// The kinds of messages.
@@ -310,7 +316,7 @@ pub fn code_shared<C: Coder>(
     })
 }
 
-/// Decodes the moves of a shared track at some sizes, the first of which begins a section.
+/// Decodes the moves of a shared track at some sizes, the first of which begins a section. `memory` is working memory.
 ///
 /// # Errors
 ///
@@ -320,11 +326,13 @@ pub fn decode_shared(
     level: i16,
     scale: Scale,
     sizes: Range<usize>,
+    memory: &mut Vec<u16>,
 ) -> Result<Vec<i16>, Damage> {
-    let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
+    let mut model = ContextModel::with_memory(Decoder::new(bytes), &OUTLINE_PRIOR, core::mem::take(memory));
     let mut moves = Vec::with_capacity(sizes.len());
-    code_shared(&mut model, level, &mut moves, scale, sizes)?;
-    Ok(moves)
+    let decoded = code_shared(&mut model, level, &mut moves, scale, sizes);
+    *memory = model.into_memory();
+    decoded.map(|()| moves)
 }
 
 /// Encodes a list of grid offsets.

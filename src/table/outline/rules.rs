@@ -18,6 +18,8 @@ const ALWAYS: i32 = 65535;
 /// Rules are compared four at a time; the last lane has none.
 const LANES: usize = 4 * GROUPS;
 const GROUPS: usize = 3;
+/// Room for one number for each lane, a power of two: an index is brought into range by its lowest bits.
+const ROOM: usize = LANES.next_power_of_two();
 
 /// The tracks that are coded before one and lie beside it: the nearest below, or at the same level, and the nearest above.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -81,7 +83,7 @@ pub(super) fn to_grid(position: i32) -> i32 {
 /// The positions that the rules give a track: of rules in the first `N` groups of four; no other has what it needs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rules<const N: usize> {
-    positions: [i32; LANES],
+    positions: [i32; ROOM],
     /// The number of a row of [`VALID`].
     valid: usize,
 }
@@ -94,7 +96,7 @@ const SHARED: usize = 8;
 
 /// The rules that have what they need.
 static VALID: [Valid; 16] = {
-    let mut rows = [Valid { bits: 0, lanes: [0; LANES] }; 16];
+    let mut rows = [Valid { bits: 0, lanes: [0; ROOM] }; 16];
     let mut row = 0;
     while row < rows.len() {
         let mut rule = 0;
@@ -125,7 +127,7 @@ struct Valid {
     /// A bit for each rule.
     bits: u32,
     /// The same as masks.
-    lanes: [i32; LANES],
+    lanes: [i32; ROOM],
 }
 
 impl View<'_> {
@@ -138,7 +140,7 @@ impl View<'_> {
         shared: Option<i16>,
     ) -> Rules<N> {
         let plain = self.plain[track];
-        let mut at = [0; LANES];
+        let mut at = [0; ROOM];
         let mut valid = 0;
         (at[0], at[1]) = (to_grid(plain), plain);
         let before = |track: usize| self.before.map_or(0, |before| before[track]);
@@ -188,9 +190,9 @@ impl<const N: usize> Rules<N> {
 }
 
 #[inline(always)]
-fn lanes<const N: usize>(from: &[i32; LANES]) -> [i32x4; N] {
+fn lanes<const N: usize>(from: &[i32; ROOM]) -> [i32x4; N] {
     core::array::from_fn(|group| {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|lane| from[(4 * group + lane) % LANES]);
+        let [a, b, c, d] = [0, 1, 2, 3].map(|lane| from[(4 * group + lane) % ROOM]);
         i32x4::new([a, b, c, d])
     })
 }
@@ -215,7 +217,7 @@ const INITIAL: [[u8; RULES]; 3] = [
 
 impl Scores {
     pub(super) fn new(kind: usize) -> Self {
-        let mut scores = [0; LANES];
+        let mut scores = [0; ROOM];
         for (score, initial) in scores.iter_mut().zip(INITIAL[kind]) {
             *score = i32::from(initial) << 8;
         }
@@ -234,7 +236,7 @@ impl Scores {
             if left == 0 {
                 break;
             }
-            let position = rules.positions[left.trailing_zeros() as usize % LANES];
+            let position = rules.positions[left.trailing_zeros() as usize % ROOM];
             let equal = equal(positions, position);
             let (mut rules, mut weight) = (0, i32x4::splat(0));
             for (group, equal) in equal.into_iter().enumerate() {
@@ -263,12 +265,15 @@ impl Scores {
     /// The rule with the highest score among some, and that score. `rules` has a bit for each.
     #[inline(always)]
     fn best(&self, rules: u32) -> (usize, u16) {
-        let scores = self.0.map(i32x4::to_array);
+        let mut scores = [0; ROOM];
+        for (to, from) in scores.chunks_exact_mut(4).zip(self.0) {
+            to.copy_from_slice(&from.to_array());
+        }
         let (mut best, mut score, mut left) = (0, -1, rules);
         while left != 0 {
-            let rule = left.trailing_zeros() as usize % LANES;
+            let rule = left.trailing_zeros() as usize % ROOM;
             left &= left - 1;
-            let own = scores[rule / 4][rule % 4];
+            let own = scores[rule];
             (best, score) = if own > score { (rule, own) } else { (best, score) };
         }
         (best, score as u16)

@@ -38,7 +38,7 @@ fn the_example_of_the_specification_is_coded_as_it_says() {
     assert!(page.contains(&format!("Its hash is {:04X}.", points.hash())), "{:04X}", points.hash());
     let hex: String = message.iter().map(|byte| format!("{byte:02x}")).collect();
     assert!(page.contains(&format!("    {hex}\n")), "spec/nfrt.md does not have {hex}");
-    assert_eq!(decode(&message, &known, 0..3), Ok((expected, sources)));
+    assert_eq!(decode(&message, &known, 0..3, &mut Vec::new()), Ok((expected, sources)));
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn a_track_that_stays_takes_no_bits_and_keeps_its_place() {
         question.wanted.into()
     });
     assert!(!asked.contains(&0), "a track that stays was coded");
-    assert_eq!(decode(&message.expect("a message"), &known, 0..3), Ok((expected, sources)));
+    assert_eq!(decode(&message.expect("a message"), &known, 0..3, &mut Vec::new()), Ok((expected, sources)));
 }
 
 /// The example's outline at 70 sizes, which make three sections, with moves that nothing predicts well.
@@ -81,11 +81,11 @@ fn the_sizes_of_a_section_are_read_without_those_before() {
     let known = Known { scale, ..known(&points) };
     let message =
         encode(&known, &mut weights, &sources, &mut |question| question.wanted.into()).expect("a message");
-    assert_eq!(decode(&message, &known, 0..70), Ok((whole.clone(), sources)));
+    assert_eq!(decode(&message, &known, 0..70, &mut Vec::new()), Ok((whole.clone(), sources)));
     for size in 0..70 {
         let sizes = sizes_for(size);
         assert!(sizes.end == size + 1 && sizes.len() <= 29, "{sizes:?} are read for {size}");
-        let (found, _) = decode(&message, &known, sizes.clone()).expect("some sizes");
+        let (found, _) = decode(&message, &known, sizes.clone(), &mut Vec::new()).expect("some sizes");
         for size in sizes.clone() {
             let [found, whole] = [&found, &whole].map(|weights| {
                 let y = &weights.axes[1];
@@ -106,7 +106,7 @@ fn a_section_ends_where_its_bytes_do() {
     let longer = [&message[..], &[0]].concat();
     let shorter = &message[..message.len() - 1];
     for (bytes, sizes) in [(&longer[..], 58..70), (shorter, 58..70), (&longer, 0..70), (shorter, 0..70)] {
-        assert!(decode(bytes, &known, sizes.clone()).is_err(), "{} bytes, {sizes:?}", bytes.len());
+        assert!(decode(bytes, &known, sizes.clone(), &mut Vec::new()).is_err(), "{} bytes, {sizes:?}", bytes.len());
     }
 }
 
@@ -115,11 +115,11 @@ fn a_shared_track_is_read_section_by_section() {
     let (_, weights, _, scale) = sections();
     let moves = &weights.axes[1].moves[..70];
     let message = encode_shared(350, moves, scale).expect("a message");
-    assert_eq!(decode_shared(&message, 350, scale, 0..70).as_deref(), Ok(moves));
+    assert_eq!(decode_shared(&message, 350, scale, 0..70, &mut Vec::new()).as_deref(), Ok(moves));
     for size in 0..70 {
         let sizes = sizes_for(size);
-        assert_eq!(decode_shared(&message, 350, scale, sizes.clone()).as_deref(), Ok(&moves[sizes]));
+        assert_eq!(decode_shared(&message, 350, scale, sizes.clone(), &mut Vec::new()).as_deref(), Ok(&moves[sizes]));
     }
     let longer = [&message[..], &[0]].concat();
-    assert!(decode_shared(&longer, 350, scale, 58..70).is_err());
+    assert!(decode_shared(&longer, 350, scale, 58..70, &mut Vec::new()).is_err());
 }

@@ -39,9 +39,14 @@ fn naive(positions: [i32; LANES], scores: [i32; LANES], valid: usize) -> (Vec<(i
     (found, total)
 }
 
+/// Numbers of all lanes, as they are kept.
+fn room(lanes: [i32; LANES]) -> [i32; ROOM] {
+    core::array::from_fn(|lane| lanes.get(lane).copied().unwrap_or(0))
+}
+
 fn check<const N: usize>(positions: [i32; LANES], scores: [i32; LANES], valid: usize, hinted: i32) {
-    let rules = Rules::<N> { positions, valid };
-    let mut known = Scores(lanes(&scores));
+    let rules = Rules::<N> { positions: room(positions), valid };
+    let mut known = Scores(lanes(&room(scores)));
     let mut ranked = Ranked::default();
     known.rank(&rules, &mut ranked);
     let (expected, total) = naive(positions, scores, valid);
