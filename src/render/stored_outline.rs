@@ -58,7 +58,8 @@ impl Font {
         };
         let shared = Shared { levels: outlines.levels(), moves: &moves };
         let known = Known { points: &points, advance: self.advance_units(glyph), scale, shared };
-        let (weights, _) = decode(message, &known, sizes.clone(), &mut memory.slots).map_err(|damage| damage.of(glyph))?;
+        let (weights, _) =
+            decode(message, &known, sizes.clone(), &mut memory.slots).map_err(|damage| damage.of(glyph))?;
         let model = OutlineModel::new(points, weights, scale, sizes).map_err(|damage| damage.of(glyph))?;
         limits.check_decoded(glyph, model.memory())?;
         Ok(model)
@@ -122,10 +123,9 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     let table = font.table()?;
     let (outlines, scale) = (*table.outlines(), font.scale());
     let sizes = scale.sizes();
-    let shared_moves =
-        |axis: usize, number: usize, sizes: Range<usize>| {
-            font.shared_moves(&outlines, axis, number, sizes, &mut Vec::new())
-        };
+    let shared_moves = |axis: usize, number: usize, sizes: Range<usize>| {
+        font.shared_moves(&outlines, axis, number, sizes, &mut Vec::new())
+    };
     let shared = Shared { levels: outlines.levels(), moves: &shared_moves };
     for glyph in table.gids().map(u32::from).filter(|glyph| outlines.find(*glyph).is_some()) {
         model.forget();
@@ -142,7 +142,9 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
             read_outline(font, glyph, &mut points)?;
             let known = Known { points: &points, advance: font.advance_units(glyph), scale, shared };
             decode(message, &known, 0..sizes, &mut Vec::new()).and_then(|(mut weights, mut sources)| {
-                code(model, &known, &mut weights, &mut sources, 0..sizes, &mut |question| question.wanted.into())
+                code(model, &known, &mut weights, &mut sources, 0..sizes, &mut |question| {
+                    question.wanted.into()
+                })
             })
         };
         recoded.map_err(|damage| damage.of(glyph))?;

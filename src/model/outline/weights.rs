@@ -56,7 +56,9 @@ impl AxisHints {
     }
 
     fn memory(&self) -> usize {
-        2 * (self.levels.len() + self.moves.len()) + self.track_of.len() + size_of_val(&*self.corrections)
+        2 * (self.levels.capacity() + self.moves.len())
+            + self.track_of.len()
+            + size_of_val(&*self.corrections)
     }
 }
 

@@ -291,6 +291,10 @@ impl Corrections {
 }
 
 /// Encodes the moves of a shared track.
+///
+/// # Errors
+///
+/// None that a writer can meet.
 pub fn encode_shared(level: i16, moves: &[i16], scale: Scale) -> Result<Vec<u8>, Damage> {
     let mut model = ContextModel::new(Encoder::new(), &OUTLINE_PRIOR);
     code_shared(&mut model, level, &mut moves.to_vec(), scale, 0..scale.sizes())?;

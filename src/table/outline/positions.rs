@@ -50,11 +50,10 @@ pub(super) struct Axis<'r> {
     axis: usize,
     /// In the order in which they are coded.
     tracks: Vec<Track>,
-    plain: Vec<i32>,
-    hinted: Vec<i32>,
-    /// The hinted positions at the size before.
-    before: Vec<i32>,
-    is_first: bool,
+    /// Plain positions of all tracks, then the hinted ones at even sizes of the section, and those at odd ones.
+    positions: Vec<i32>,
+    /// The sizes of the section that are coded.
+    coded: usize,
     /// What each track refers to, and the first size of the moves there.
     referred: &'r [Referred],
     first_size: usize,
@@ -86,10 +85,8 @@ impl<'r> Axis<'r> {
             referred,
             first_size,
             tracks: coding_order(count).into_iter().map(track).collect(),
-            plain: vec![0; count],
-            hinted: vec![0; count],
-            before: vec![0; count],
-            is_first: true,
+            positions: vec![0; 3 * count],
+            coded: 0,
             ranked: Ranked::default(),
         }
     }
@@ -104,29 +101,32 @@ impl<'r> Axis<'r> {
         moves: &mut [i16],
         choose: Choose<'_>,
     ) {
-        for (plain, level) in self.plain.iter_mut().zip(levels) {
+        let count = self.positions.len() / 3;
+        let (plain, rest) = self.positions.split_at_mut(count);
+        let (even, odd) = rest.split_at_mut(count);
+        let (hinted, before) = if self.coded.is_multiple_of(2) { (even, odd) } else { (odd, even) };
+        for (plain, level) in plain.iter_mut().zip(levels) {
             *plain = mul_fixed((*level).into(), scale);
         }
-        core::mem::swap(&mut self.hinted, &mut self.before);
+        let plain = &*plain;
+        let before = (self.coded > 0).then_some(&*before);
         let mut missed = 0;
         for track in &mut self.tracks {
             let number = track.number;
-            let plain = self.plain[number];
             let Referred { moves: shared, is_coded } = &self.referred[number];
             let shared = shared.as_ref().and_then(|moves| moves.get(size - self.first_size)).copied();
             if !is_coded {
                 moves[number] = shared.unwrap_or(0);
             } else {
-                let before = (!self.is_first).then_some(&*self.before);
-                let view = View { levels, plain: &self.plain, hinted: &self.hinted, before };
+                let view = View { levels, plain, hinted, before };
                 let at = At { axis: self.axis, size, missed, shared };
                 let (moved, is_first) = track.code(model, &view, at, &mut self.ranked, moves[number], choose);
                 moves[number] = moved;
                 missed += usize::from(!is_first);
             }
-            self.hinted[number] = plain.wrapping_add(moves[number].into());
+            hinted[number] = plain[number].wrapping_add(moves[number].into());
         }
-        self.is_first = false;
+        self.coded += 1;
     }
 }
 
@@ -322,12 +322,16 @@ pub(super) fn code_shared<C: Coder>(
     sizes: impl Iterator<Item = (usize, i32)>,
     moves: &mut Vec<i16>,
 ) {
-    let mut track =
-        Track { number: 0, neighbours: Neighbours::default(), scores: Scores::new(0), misses: 0 };
+    let mut track = Track { number: 0, neighbours: Neighbours::default(), scores: Scores::new(0), misses: 0 };
     let (mut before, mut ranked) = (None, Ranked::default());
     for (size, scale) in sizes {
         let plain = [mul_fixed(level.into(), scale)];
-        let view = View { levels: &[level], plain: &plain, hinted: &[0], before: before.as_ref().map(<[i32; 1]>::as_slice) };
+        let view = View {
+            levels: &[level],
+            plain: &plain,
+            hinted: &[0],
+            before: before.as_ref().map(<[i32; 1]>::as_slice),
+        };
         let at = At { axis: 0, size, missed: 0, shared: None };
         let wanted = moves.get(size).copied().unwrap_or(0);
         let (moved, _) =

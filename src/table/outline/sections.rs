@@ -1,8 +1,8 @@
 //! Sections of a message: its sizes are coded in groups, which are read without each other.
 
-use alloc::vec;
 use core::ops::Range;
 
+use crate::constants::MAX_TRAINED_PPEM;
 use crate::error::Damage;
 use crate::table::context_model::ContextModel;
 use crate::table::damage::malformed_end;
@@ -45,9 +45,10 @@ pub(super) fn code<C: Coder>(
         return if is_whole { model.coder.check_end().map_err(malformed_end) } else { Ok(()) };
     }
     let sizes = |section: usize| section * SECTION_SIZES..((section + 1) * SECTION_SIZES).min(count);
-    let mut lengths = vec![0; sections - 1];
+    let mut lengths = [0; MAX_TRAINED_PPEM as usize / SECTION_SIZES];
+    let lengths = &mut lengths[..sections - 1];
     if C::WRITES {
-        for (section, length) in (1..).zip(&mut lengths) {
+        for (section, length) in (1..).zip(&mut *lengths) {
             model.forget();
             model.coder.begin_section();
             code(model, sizes(section))?;
@@ -55,17 +56,21 @@ pub(super) fn code<C: Coder>(
         }
         model.forget();
     }
-    for (section, length) in (1..).zip(&mut lengths) {
+    for (section, length) in (1..).zip(&mut *lengths) {
         let context = 2 * owner as usize + usize::from(section + 1 == sections);
         *length = model.positive(SECTION, [context, 0, 0], *length as u32 + 1) as usize - 1;
     }
     if C::WRITES {
         return code(model, sizes(0));
     }
-    for section in wanted.start / SECTION_SIZES..wanted.end.div_ceil(SECTION_SIZES) {
+    let first = wanted.start / SECTION_SIZES;
+    for section in first..wanted.end.div_ceil(SECTION_SIZES) {
         let sizes = sizes(section);
-        model.coder.enter_section(&lengths, section).map_err(malformed_end)?;
-        model.forget();
+        model.coder.enter_section(lengths, section).map_err(malformed_end)?;
+        // What is before the sizes has none of their slots.
+        if section > first {
+            model.forget();
+        }
         code(model, sizes.start..sizes.end.min(wanted.end))?;
         if wanted.end >= sizes.end {
             model.coder.check_end().map_err(malformed_end)?;

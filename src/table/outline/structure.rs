@@ -78,8 +78,10 @@ pub(super) fn code<C: Coder>(
     shared: &Shared<'_>,
 ) -> Result<(), Damage> {
     hints.track_of.resize(points.len(), UNTOUCHED);
-    let mut tracks = Tracks { last: i32::from(i16::MIN), before: [false; 2], levels: Vec::new() };
     let (order, levels) = levels(points, axis);
+    let room = if C::WRITES { 0 } else { levels.len() };
+    let mut tracks =
+        Tracks { last: i32::from(i16::MIN), before: [false; 2], levels: Vec::with_capacity(room) };
     for (at, level) in levels.iter().enumerate() {
         let points = order.get(level.points.clone()).unwrap_or_default();
         tracks.code(model, (at, level), points, units_per_em, hints)?;

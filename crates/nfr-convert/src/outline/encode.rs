@@ -41,8 +41,9 @@ pub(crate) fn encode(
     });
     let all: Vec<(&(OutlineSamples, u16), &FittedOutline)> = glyphs.iter().zip(&*outlines).collect();
     let encoded = parallel::map(&all, jobs, |((samples, advance), outline)| {
-        let moves =
-            |axis: usize, number: usize, sizes: Range<usize>| Ok(shared[axis].0[number].moves[sizes].to_vec());
+        let moves = |axis: usize, number: usize, sizes: Range<usize>| {
+            Ok(shared[axis].0[number].moves[sizes].to_vec())
+        };
         let known = Known {
             points: &samples.points,
             advance: *advance,

@@ -1,6 +1,6 @@
 use super::*;
-use crate::table::outline::sizes_for;
 use crate::model::outline::AxisHints;
+use crate::table::outline::sizes_for;
 
 /// The example of the specification: a glyph at three sizes, with three tracks along y.
 fn example() -> (OutlinePoints, OutlineWeights, Sources) {
@@ -106,7 +106,11 @@ fn a_section_ends_where_its_bytes_do() {
     let longer = [&message[..], &[0]].concat();
     let shorter = &message[..message.len() - 1];
     for (bytes, sizes) in [(&longer[..], 58..70), (shorter, 58..70), (&longer, 0..70), (shorter, 0..70)] {
-        assert!(decode(bytes, &known, sizes.clone(), &mut Vec::new()).is_err(), "{} bytes, {sizes:?}", bytes.len());
+        assert!(
+            decode(bytes, &known, sizes.clone(), &mut Vec::new()).is_err(),
+            "{} bytes, {sizes:?}",
+            bytes.len()
+        );
     }
 }
 
@@ -118,7 +122,10 @@ fn a_shared_track_is_read_section_by_section() {
     assert_eq!(decode_shared(&message, 350, scale, 0..70, &mut Vec::new()).as_deref(), Ok(moves));
     for size in 0..70 {
         let sizes = sizes_for(size);
-        assert_eq!(decode_shared(&message, 350, scale, sizes.clone(), &mut Vec::new()).as_deref(), Ok(&moves[sizes]));
+        assert_eq!(
+            decode_shared(&message, 350, scale, sizes.clone(), &mut Vec::new()).as_deref(),
+            Ok(&moves[sizes])
+        );
     }
     let longer = [&message[..], &[0]].concat();
     assert!(decode_shared(&longer, 350, scale, 58..70, &mut Vec::new()).is_err());
