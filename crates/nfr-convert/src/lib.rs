@@ -39,7 +39,7 @@ pub mod writer;
 
 pub use conversion::{Conversion, GlyphReport, Progress};
 pub use error::Error;
-pub use input::{open, ppem, select};
+pub use input::{closure, open, ppem, select};
 pub use options::{Options, Quality, Shape};
 pub use pipeline::{convert, resume};
 

@@ -79,7 +79,7 @@ fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>>
     let selection = nfr_convert::select::Selection { unicodes: args.unicodes.parse()?, ..Default::default() };
     let (ppem, ppem_step) = args.train_ppem.evenly_spaced().ok_or("train on evenly spaced sizes")?;
     let options = Options {
-        gids: selection.resolve(&font, [])?,
+        gids: selection.resolve(&font, [])?.gids,
         jobs,
         target: args.target,
         shape: args.shape,

@@ -8,7 +8,10 @@ use super::failure::Failure;
 use super::files::read;
 use nfr::Target;
 use nfr_convert::Shape;
-use nfr_convert::select::{CodePoints, GlyphIds, GlyphNames, Selection};
+use nfr_convert::select::{
+    CodePoints, GlyphIds, GlyphNames, Selected, Selection, missing_characters, missing_text,
+};
+use read_fonts::FontRef;
 
 const HEADING: &str = "Glyphs (all that is given adds up)";
 
@@ -44,7 +47,7 @@ pub struct SelectionArgs {
     /// The characters of a text file in UTF-8
     #[arg(long, help_heading = HEADING, value_name = "FILE")]
     text_file: Option<PathBuf>,
-    /// Code points, as in U+20-7E,U+E9
+    /// Code points, as in CSS: U+20-7E,U+E9,U+4??
     #[arg(long, help_heading = HEADING, value_name = "LIST")]
     unicodes: Option<CodePoints>,
     /// Glyph numbers, as in 3,5-9
@@ -53,9 +56,43 @@ pub struct SelectionArgs {
     /// Glyph names, as in a,eacute
     #[arg(long, help_heading = HEADING, value_name = "LIST")]
     glyphs: Option<GlyphNames>,
+    /// Fail where the font lacks a character that is asked for, instead of warning
+    #[arg(long, help_heading = HEADING)]
+    strict: bool,
 }
 
 impl SelectionArgs {
+    /// The glyphs of a font that are selected, ascending; an empty selection stands for `all`. `warn` is told of characters that the
+    /// font lacks.
+    ///
+    /// # Errors
+    ///
+    /// A text file that cannot be read, a selection that has no glyph, and with `--strict` a character that the font lacks.
+    pub fn resolve(
+        &self,
+        font: &FontRef<'_>,
+        all: impl IntoIterator<Item = u16>,
+        warn: impl FnOnce(&str),
+    ) -> Result<Vec<u16>, Failure> {
+        let Selected { gids, missing } = self.selection()?.resolve(font, all)?;
+        if !missing.is_empty() {
+            if self.strict {
+                return Err(missing_characters(&missing).into());
+            }
+            warn(&format!("warning: {}", missing_text(&missing)));
+        }
+        Ok(gids)
+    }
+
+    /// Whether nothing is selected, which stands for everything.
+    pub fn is_empty(&self) -> bool {
+        self.text.is_none()
+            && self.text_file.is_none()
+            && self.unicodes.is_none()
+            && self.gids.is_none()
+            && self.glyphs.is_none()
+    }
+
     /// Reads the text file and puts all together.
     ///
     /// # Errors

@@ -13,6 +13,7 @@ use super::failure::Failure;
 use super::files::{Output, read, same_file};
 use super::progress::{Reporter, Verbosity, print_line};
 use nfr::Target;
+use nfr_convert::closure::{LayoutFeatures, close};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::report::{Report, glyph_count_text};
 use nfr_convert::open::{has_models, open};
@@ -34,6 +35,14 @@ pub struct Args {
     output: PathBuf,
     #[command(flatten)]
     selection: SelectionArgs,
+    /// The features of GSUB whose glyphs are converted with those that they stand for: tags, as in default,smcp,onum, or * or none
+    ///
+    /// "default" are those that pyftsubset keeps by default: what shapers apply without being asked, and a few more.
+    #[arg(long, value_name = "LIST", default_value = "default")]
+    layout_features: LayoutFeatures,
+    /// Convert only the glyphs that are named, without what layout and composites need, .notdef and the space
+    #[arg(long)]
+    no_closure: bool,
     /// The sizes to learn, in pixels per em: a range, which may have a step, as in 8-64:2
     ///
     /// With --train-ppem, the sizes that the figures are about.
@@ -158,7 +167,8 @@ fn quality(text: &str) -> Result<Quality, String> {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let sizes = check_usage(args)?;
     let input = read(&args.input)?;
-    let (options, reporter) = prepare(args, &input, sizes).map_err(|e| e.at(args.input.display()))?;
+    let prepared = prepare(args, &input, sizes).map_err(|e| e.at(args.input.display()))?;
+    let Prepared { options, reporter, added } = prepared;
     let output = Output::new(&args.output)?;
     let report = args.report.as_deref().map(Output::new).transpose()?;
 
@@ -190,7 +200,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let json = serde_json::to_string_pretty(&contents).map_err(|e| Failure::failed(e.to_string()))?;
         file.write((json + "\n").as_bytes())?;
     }
-    if args.quiet { Ok(()) } else { print_summary(&contents) }
+    if args.quiet { Ok(()) } else { print_summary(&contents, added) }
 }
 
 /// Warns of glyphs and sizes of a conversion of quality 100 that are not exact: those of `--ppem` and those that were learned.
@@ -230,12 +240,20 @@ fn check_usage(args: &Args) -> Result<(RangeInclusive<u16>, u16), Failure> {
     })
 }
 
+/// What is known before the training.
+struct Prepared {
+    options: Options,
+    reporter: Reporter,
+    /// The glyphs that were not named: those that layout and composites need, .notdef and the space.
+    added: usize,
+}
+
 /// Checks all that can be known before the training.
 fn prepare(
     args: &Args,
     input: &[u8],
     (ppem, ppem_step): (RangeInclusive<u16>, u16),
-) -> Result<(Options, Reporter), Failure> {
+) -> Result<Prepared, Failure> {
     let font = open(input, args.index)?;
     if has_models(&font) {
         return Err(Failure::failed(
@@ -246,8 +264,20 @@ fn prepare(
     for size in args.ppem.sizes().iter().copied().chain(ppem.clone().step_by(ppem_step.into())) {
         teacher.at(size)?;
     }
+    let warn = |line: &str| {
+        if !args.quiet {
+            print_line(line);
+        }
+    };
     let all = 0..=u16::try_from(glyph_count(&font)?.saturating_sub(1)).unwrap_or(u16::MAX);
-    let gids = args.selection.selection()?.resolve(&font, all)?;
+    let gids = args.selection.resolve(&font, all, warn)?;
+    let named = gids.len();
+    let gids = if args.selection.is_empty() || args.no_closure {
+        gids
+    } else {
+        close(&font, &gids, &args.layout_features)?
+    };
+    let added = gids.len() - named;
     let verbosity = match (args.quiet, args.verbose) {
         (true, _) => Verbosity::Quiet,
         (_, true) => Verbosity::Verbose,
@@ -267,7 +297,7 @@ fn prepare(
         drop_outlines: args.drop_outlines,
         ..Options::default().with_quality(args.quality)
     };
-    Ok((options, reporter))
+    Ok(Prepared { options, reporter, added })
 }
 
 fn summary<'r>(
@@ -312,15 +342,19 @@ fn summary<'r>(
     }
 }
 
-fn print_summary(report: &ReportFile<'_>) -> Result<(), Failure> {
+fn print_summary(report: &ReportFile<'_>, added: usize) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let unhinted = &report.comparison.totals.unhinted.figures;
+    let added = match added {
+        0 => String::new(),
+        count => format!(", {count} of them for layout, composites, .notdef and the space"),
+    };
     let composed = match report.glyphs.iter().filter(|glyph| glyph.composed).count() {
         0 => String::new(),
         count => format!(", {count} of them put together from others"),
     };
     let count = glyph_count_text(report.glyphs.len());
-    writeln!(out, "{}: {count} at {} ppem{composed}", report.output, report.ppem)?;
+    writeln!(out, "{}: {count} at {} ppem{composed}{added}", report.output, report.ppem)?;
     writeln!(out, "table   {} bytes, {:.1} per glyph", report.table_bytes, report.bytes_per_glyph)?;
     let hints = &report.hint_bytes;
     writeln!(

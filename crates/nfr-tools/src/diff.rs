@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read};
+use super::progress::print_line;
 use nfr_convert::compare::diff::Sources;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::html::{self, SampleText};
@@ -77,7 +78,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     open_neural(&args.neural, &neural)?;
     let pair = FontPair::open(&original, args.index, &neural)?;
     let selection = args.selection.selection()?;
-    let gids = selection.resolve(pair.original(), modelled(pair.font())?)?;
+    let gids = args.selection.resolve(pair.original(), modelled(pair.font())?, print_line)?;
     let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));
     let json = args.json.as_deref().filter(|_| !json_to_stdout).map(Output::new).transpose()?;
     let page = args.html.as_deref().map(page_in).transpose()?;

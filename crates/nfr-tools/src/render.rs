@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::args::SelectionArgs;
 use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read};
+use super::progress::print_line;
 use nfr::Font;
 use nfr_convert::compare::picture::{LabelFont, SheetRow, png, sheet, specimen, text_line};
 use nfr_convert::compare::source::{BitmapSource, Neural};
@@ -67,7 +68,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let data = read(&args.font)?;
     let (file, font) = open_neural(&args.font, &data)?;
     let selection = args.selection.selection()?;
-    let gids = selection.resolve(&file, modelled(&font)?)?;
+    let gids = args.selection.resolve(&file, modelled(&font)?, print_line)?;
     let source = Neural::new(&font, &gids)?;
     if let Some(path) = &args.png {
         let glyph = |c| font.glyph_for_char(c).and_then(|glyph| u16::try_from(glyph).ok());

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{modelled, open_neural, read};
+use super::progress::print_line;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::open::{has_models, open};
 use nfr_convert::ppem::PpemList;
@@ -58,7 +59,7 @@ fn verify(args: &Args) -> Result<Vec<String>, Failure> {
     check_roles(args, &original, &neural)?;
     open_neural(&args.neural, &neural)?;
     let pair = FontPair::open_edited(&original, args.index, &neural)?;
-    let gids = args.selection.selection()?.resolve(pair.original(), modelled(pair.font())?)?;
+    let gids = args.selection.resolve(pair.original(), modelled(pair.font())?, print_line)?;
     let (first, last) = pair.font().ppem_range();
     let trained = || PpemList::from(first..=last);
     let ppem = args.ppem.clone().unwrap_or_else(trained);

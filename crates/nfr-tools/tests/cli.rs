@@ -9,7 +9,7 @@ use common::{Directory, SANS, collection, nfr, nfr_convert, sans, sans_with};
 /// Converts a font file with few glyphs at few sizes, should it get that far.
 fn convert(directory: &Directory, input: &str, more: &[&str]) -> common::Run {
     let output = directory.name("out.ttf");
-    nfr_convert(&[&["--ppem", "10-11", "--gids", "36", input, &output], more].concat())
+    nfr_convert(&[&["--ppem", "10-11", "--gids", "36", "--no-closure", input, &output], more].concat())
 }
 
 #[test]
@@ -121,8 +121,9 @@ fn what_is_not_in_the_font_is_named() {
         let output = directory.name("out.ttf");
         nfr_convert(&[&[SANS, &output], args].concat()).fails_with(parts);
     };
-    refused(&["--text", "a一"], &["'一' (U+4E00)", "--text"]);
-    refused(&["--unicodes", "U+61,U+10FFFF"], &["U+10FFFF", "--unicodes"]);
+    refused(&["--text", "a一", "--strict"], &["'一' (U+4E00)", "--text"]);
+    refused(&["--unicodes", "U+61,U+10FFFF", "--strict"], &["U+10FFFF", "--unicodes"]);
+    refused(&["--unicodes", "U+4e0?"], &["16 characters are not in the font", "U+4E00", "and 11 more"]);
     refused(&["--gids", "3,2620"], &["glyph 2620", "0-2619", "--gids"]);
     refused(&["--glyphs", "a,nosuch"], &["'nosuch'", "--glyphs"]);
     refused(&["--text", ""], &["selection is empty"]);

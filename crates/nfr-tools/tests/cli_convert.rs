@@ -14,6 +14,8 @@ use common::{Directory, SANS, collection, nfr, nfr_convert, sans};
 use nfr::Font;
 use nfr::internals::decode;
 
+/// A font with ligatures.
+const DEJAVU: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/DejaVuSans.ttf");
 /// 'a' and 'g' of Liberation Sans.
 const GIDS: [u64; 2] = [68, 74];
 const SIZES: std::ops::RangeInclusive<u64> = 10..=14;
@@ -21,9 +23,9 @@ const SIZES: std::ops::RangeInclusive<u64> = 10..=14;
 /// Fields, where they can be trained.
 const SHAPE: &str = if cfg!(feature = "train") { "field" } else { "outline" };
 /// Few glyphs at few sizes, so that training takes seconds.
-const QUICK: [&str; 6] = ["--text", "ag", "--ppem", "10-14", "--shape", SHAPE];
+const QUICK: [&str; 7] = ["--no-closure", "--text", "ag", "--ppem", "10-14", "--shape", SHAPE];
 /// For what needs any font that is converted.
-const QUICKEST: [&str; 4] = ["--text", "i", "--ppem", "12"];
+const QUICKEST: [&str; 5] = ["--no-closure", "--text", "i", "--ppem", "12"];
 
 struct Converted {
     directory: Directory,
@@ -279,4 +281,41 @@ fn a_font_of_a_collection_is_converted_and_compared() {
         nfr_convert(&[&QUICKEST[..], &["--index", "0", "--verbose", &input, &output]].concat()).succeeds();
     assert!(run.stderr.contains("glyph 76 i: mae 0.0"), "{}", run.stderr);
     nfr(&["diff", &input, &output, "--ppem", "12"]).succeeds();
+}
+
+#[test]
+fn what_layout_makes_of_a_text_is_converted_with_it() {
+    let directory = Directory::new();
+    let converted = |more: &[&str]| {
+        let output = directory.name("out.ttf");
+        let args = [&["--text", "fi", "--ppem", "12", DEJAVU, &output], more].concat();
+        (nfr_convert(&args).succeeds().stdout, Font::new(std::fs::read(&output).unwrap()).unwrap())
+    };
+    let has = |font: &Font, character: char| font.has_model(font.glyph_for_char(character).unwrap());
+    let (told, font) = converted(&[]);
+    assert!(told.contains("of them for layout"), "{told}");
+    assert!(has(&font, 'ﬁ') && has(&font, ' ') && font.has_model(0));
+    let (_, font) = converted(&["--layout-features", "none"]);
+    assert!(!has(&font, 'ﬁ') && has(&font, ' ') && font.has_model(0));
+    let (told, font) = converted(&["--no-closure"]);
+    assert!(!told.contains("of them"), "{told}");
+    assert_eq!(font.modelled_glyphs().len(), 2);
+    let output = directory.name("out.ttf");
+    nfr_convert(&["--text", "f", "--layout-features", "ligatures", DEJAVU, &output])
+        .rejects_usage(&["ligatures", "smcp"]);
+}
+
+#[test]
+fn characters_that_the_font_lacks_are_told_in_one_line() {
+    let directory = Directory::new();
+    let output = directory.name("out.ttf");
+    let told = nfr_convert(&["--unicodes", "U+61, U+4E0?", "--ppem", "12", SANS, &output]).succeeds().stderr;
+    assert_eq!(
+        told.lines().filter(|line| line.contains("16 characters are not in the font")).count(),
+        1,
+        "{told}"
+    );
+    let told = nfr(&["diff", SANS, &output, "--text", "a一", "--ppem", "12"]).succeeds().stderr;
+    assert!(told.contains("'一' (U+4E00)"), "{told}");
+    nfr(&["diff", SANS, &output, "--text", "a一", "--ppem", "12", "--strict"]).fails_with(&["U+4E00"]);
 }

@@ -28,9 +28,9 @@ fn converted() -> &'static Converted {
     CONVERTED.get_or_init(|| {
         let directory = Directory::new();
         let (exact, default) = (directory.name("exact.ttf"), directory.name("default.ttf"));
-        let run = nfr_convert(&["--text", TEXT, "--quality", "100", SANS, &exact]).succeeds();
+        let run = nfr_convert(&["--no-closure", "--text", TEXT, "--quality", "100", SANS, &exact]).succeeds();
         assert!(!run.stderr.contains("warning"), "{}", run.stderr);
-        nfr_convert(&["--text", TEXT, SANS, &default]).succeeds();
+        nfr_convert(&["--no-closure", "--text", TEXT, SANS, &default]).succeeds();
         Converted { directory, exact, default }
     })
 }
@@ -47,7 +47,8 @@ fn a_font_of_quality_100_is_equal_and_the_exit_code_is_0() {
     for name in ["LiberationSans-Regular", "LiberationSerif-Regular", "DejaVuSans"] {
         let (original, output) = (SANS.replace("LiberationSans-Regular", name), directory.name("out.ttf"));
         for target in ["smooth", "mono"] {
-            let args = ["--text", TEXT, "--quality", "100", "--target", target, &original, &output];
+            let args =
+                ["--no-closure", "--text", TEXT, "--quality", "100", "--target", target, &original, &output];
             assert_eq!(warnings(&args), Vec::<String>::new());
             let run = nfr(&["verify", &original, &output]).succeeds();
             for part in ["4 glyphs, 8-64 ppem, target ", target, "compared, 0 differ\n", "0/64 pixel"] {
@@ -179,7 +180,10 @@ fn quality_100_warns_in_one_line_of_what_is_not_exact() {
         ("5 sizes whose hinting is predicted", "46 sizes outside of the trained 10-20 ppem");
     told(&["--text", "ag", "--train-ppem", "10-20:2"], &[predicted, outside]);
     if cfg!(feature = "train") {
-        told(&["--text", "i", "--ppem", "12", "--shape", "field"], &["1 glyph drawn from a field"]);
+        told(
+            &["--no-closure", "--text", "i", "--ppem", "12", "--shape", "field"],
+            &["1 glyph drawn from a field"],
+        );
     }
     let args = ["--text", "ag", "--train-ppem", "10-20:2", SANS, &output];
     assert!(warnings(&args).is_empty(), "the default quality does not claim to be exact");
@@ -194,6 +198,7 @@ fn a_glyph_whose_contours_hinting_changes_does_not_stop_a_conversion() {
     let input = directory.write("in.ttf", &with_flipped_points(&data, gid(&data, 'e'), [3, 6, 12]));
     let (output, report) = (directory.name("out.ttf"), directory.name("report.json"));
     let outline = [
+        "--no-closure",
         "--text",
         "aeo",
         "--ppem",
@@ -215,7 +220,7 @@ fn a_glyph_whose_contours_hinting_changes_does_not_stop_a_conversion() {
     assert_eq!((&report["left_out"], &report["comparison"]["glyphs"]), (&serde_json::json!([72]), &2.into()));
     nfr(&["verify", &input, &output]).succeeds();
     assert!(nfr(&["info", &output]).succeeds().stdout.contains("2 of 2620 have models"));
-    let run = nfr_convert(&["--text", "aeo", "--ppem", "11-12", &input, &output]).succeeds();
+    let run = nfr_convert(&["--no-closure", "--text", "aeo", "--ppem", "11-12", &input, &output]).succeeds();
     let info = nfr(&["info", &output]).succeeds().stdout;
     let verified = nfr(&["verify", &input, &output, "--text", "aeo"]).stdout;
     let (told, models, reason) = if cfg!(feature = "train") {

@@ -1,5 +1,6 @@
 //! Reading what people pass in: font files, selections of glyphs, lists of sizes.
 
+pub mod closure;
 pub mod open;
 pub mod ppem;
 pub mod select;

@@ -28,6 +28,15 @@ pub struct Selection {
     pub names: GlyphNames,
 }
 
+/// The glyphs of a selection.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Selected {
+    /// Glyph numbers, ascending, without repeats.
+    pub gids: Vec<u16>,
+    /// Code points that the font does not have, ascending.
+    pub missing: Vec<u32>,
+}
+
 impl Selection {
     /// Whether nothing is asked for by name, number or character.
     pub fn is_empty(&self) -> bool {
@@ -39,19 +48,21 @@ impl Selection {
         self.text.iter().flat_map(|text| text.chars()).filter(|c| !matches!(c, '\n' | '\r' | '\u{feff}'))
     }
 
-    /// The glyph numbers in `font`, ascending, without repeats. An empty selection stands for `all`.
+    /// The glyph numbers in `font`. An empty selection stands for `all`. Characters that the font does not have are listed, as long
+    /// as something else is selected.
     ///
     /// # Errors
     ///
-    /// `InvalidParameter`, naming the first character or glyph that the font does not have.
-    pub fn resolve(&self, font: &FontRef<'_>, all: impl IntoIterator<Item = u16>) -> Result<Vec<u16>, Error> {
+    /// `InvalidParameter` for a selection without any glyph, and for a glyph number or name that the font does not have; it is
+    /// named.
+    pub fn resolve(&self, font: &FontRef<'_>, all: impl IntoIterator<Item = u16>) -> Result<Selected, Error> {
         if self.is_empty() {
             let all: BTreeSet<u16> = all.into_iter().collect();
-            return Ok(all.into_iter().collect());
+            return Ok(Selected { gids: all.into_iter().collect(), missing: Vec::new() });
         }
         let mut gids = BTreeSet::new();
         let glyph_count = glyph_count(font)?;
-        self.add_characters(font, &mut gids)?;
+        let missing: Vec<u32> = self.add_characters(font, &mut gids)?.into_iter().collect();
         for range in &self.gids.0 {
             if u32::from(*range.end()) >= glyph_count {
                 return Err(Error::InvalidParameter(format!(
@@ -63,28 +74,32 @@ impl Selection {
             gids.extend(range.clone());
         }
         self.add_names(font, &mut gids)?;
+        if gids.is_empty() && !missing.is_empty() {
+            return Err(missing_characters(&missing));
+        }
         if gids.is_empty() {
             return Err(Error::InvalidParameter(
                 "the selection is empty; give --text, --unicodes, --gids or --glyphs something to select"
                     .into(),
             ));
         }
-        Ok(gids.into_iter().collect())
+        Ok(Selected { gids: gids.into_iter().collect(), missing })
     }
 
-    fn add_characters(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<(), Error> {
+    /// Adds the glyphs of characters; gives the characters that the font does not have.
+    fn add_characters(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<BTreeSet<u32>, Error> {
         let font = owned(font)?;
         let charmap = font.charmap();
         let lookup = |code: u32| charmap.map_unicode(code).and_then(|gid| u16::try_from(gid.to_u32()).ok());
-        for character in self.characters() {
-            gids.insert(
-                lookup(character.into()).ok_or_else(|| missing_character(character.into(), "--text"))?,
-            );
+        let codes = self.characters().map(u32::from).chain(self.unicodes.0.iter().flat_map(Clone::clone));
+        let mut missing = BTreeSet::new();
+        for code in codes {
+            match lookup(code) {
+                Some(gid) => gids.insert(gid),
+                None => missing.insert(code),
+            };
         }
-        for code in self.unicodes.0.iter().flat_map(Clone::clone) {
-            gids.insert(lookup(code).ok_or_else(|| missing_character(code, "--unicodes"))?);
-        }
-        Ok(())
+        Ok(missing)
     }
 
     fn add_names(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<(), Error> {
@@ -144,13 +159,28 @@ pub fn glyph_names(font: &FontRef<'_>) -> Result<HashMap<u16, String>, Error> {
         .collect())
 }
 
-fn missing_character(code: u32, option: &str) -> Error {
-    let named = match char::from_u32(code) {
+/// Says how many characters a font lacks, and which are the first of them.
+pub fn missing_text(missing: &[u32]) -> String {
+    let named = |code: &u32| match char::from_u32(*code) {
         Some(c) if !c.is_control() => format!("'{c}' (U+{code:04X})"),
         _ => format!("U+{code:04X}"),
     };
+    let listed: Vec<String> = missing.iter().take(NAMES_LISTED).map(named).collect();
+    match missing {
+        [_] => format!("character {} is not in the font", listed.join(", ")),
+        _ => {
+            let more = missing.len().saturating_sub(NAMES_LISTED);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            format!("{} characters are not in the font: {}{more}", missing.len(), listed.join(", "))
+        }
+    }
+}
+
+/// The error for characters that a font lacks.
+pub fn missing_characters(missing: &[u32]) -> Error {
     Error::InvalidParameter(format!(
-        "character {named} is not in the font; leave it out of {option} or pass a font that has it"
+        "{}; leave them out of --text and --unicodes, or pass a font that has them",
+        missing_text(missing)
     ))
 }
 
@@ -167,7 +197,7 @@ mod tests {
     const SANS: &[u8] = include_bytes!("../../fonts/LiberationSans-Regular.ttf");
 
     fn select(selection: &Selection) -> Result<Vec<u16>, Error> {
-        selection.resolve(&FontRef::new(SANS).unwrap(), [9, 7, 7])
+        selection.resolve(&FontRef::new(SANS).unwrap(), [9, 7, 7]).map(|selected| selected.gids)
     }
 
     #[test]
@@ -216,8 +246,8 @@ mod tests {
     #[test]
     fn a_glyph_that_is_not_there_is_named() {
         let cases = [
-            (Selection { text: Some("a\u{4e00}".into()), ..Default::default() }, "U+4E00"),
-            (Selection { unicodes: "61,U+4E01-4E05".parse().unwrap(), ..Default::default() }, "U+4E01"),
+            (Selection { text: Some("\u{4e00}".into()), ..Default::default() }, "U+4E00"),
+            (Selection { unicodes: "U+4E01-4E09".parse().unwrap(), ..Default::default() }, "9 characters"),
             (Selection { unicodes: "D800".parse().unwrap(), ..Default::default() }, "U+D800"),
             (Selection { gids: "5-60000".parse().unwrap(), ..Default::default() }, "glyph 2620"),
             (Selection { names: "a,nosuch".parse().unwrap(), ..Default::default() }, "'nosuch'"),
@@ -226,5 +256,23 @@ mod tests {
             let error = select(&selection).unwrap_err().to_string();
             assert!(error.contains(name), "{error} does not name {name}");
         }
+    }
+
+    #[test]
+    fn characters_that_the_font_lacks_are_listed() {
+        let font = FontRef::new(SANS).unwrap();
+        let selection = Selection {
+            text: Some("\u{4e00}a\u{4e00}".into()),
+            unicodes: "U+4e0?".parse().unwrap(),
+            ..Default::default()
+        };
+        let selected = selection.resolve(&font, []).unwrap();
+        assert_eq!(selected.gids, [68]);
+        assert_eq!(selected.missing, (0x4e00..=0x4e0f).collect::<Vec<_>>());
+        let told = missing_text(&selected.missing);
+        assert!(
+            told.starts_with("16 characters") && told.contains("U+4E00") && told.ends_with("11 more"),
+            "{told}"
+        );
     }
 }

@@ -22,6 +22,7 @@ use std::sync::Arc;
 use super::args::SelectionArgs;
 use super::failure::Failure;
 use super::files::{open_neural, read};
+use super::progress::print_line;
 use nfr::Font;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::ppem::PpemList;
@@ -105,7 +106,7 @@ fn candidates<'a>(
 
 /// The glyphs to draw, ascending.
 fn glyphs(args: &Args, pair: &FontPair<'_>) -> Result<Vec<u16>, Failure> {
-    let gids = args.selection.selection()?.resolve(pair.original(), printable(pair.font()))?;
+    let gids = args.selection.resolve(pair.original(), printable(pair.font()), print_line)?;
     if gids.is_empty() {
         return Err(Failure::failed(
             "no character of printable ASCII has a model; choose others, with --unicodes or --gids",

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// Ranges of code points, as in `U+20-7E,U+E9`; plain hexadecimal too.
+/// Ranges of code points, as in CSS: `U+20-7E,U+E9,U+4??`; plain hexadecimal too.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CodePoints(pub Vec<RangeInclusive<u32>>);
 
@@ -39,10 +39,21 @@ impl FromStr for CodePoints {
                 let digits = digits.bytes().all(|b| b.is_ascii_hexdigit()).then_some(digits)?;
                 u32::from_str_radix(digits, 16).ok().filter(|&code| code <= u32::from(char::MAX))
             };
-            let (first, last) = item.split_once('-').unwrap_or((item, item));
-            match (number(first), number(last)) {
+            // Question marks stand for any digit.
+            let any = item.trim_end_matches('?').len()..item.len();
+            let ends = if any.is_empty() {
+                let (first, last) = item.split_once('-').unwrap_or((item, item));
+                (number(first), number(last))
+            } else {
+                let end = |digit: &str| number(&format!("{}{}", &item[..any.start], digit.repeat(any.len())));
+                // The last range may reach beyond the last code point.
+                (end("0"), end("F").or(end("0").map(|_| u32::from(char::MAX))))
+            };
+            match ends {
                 (Some(first), Some(last)) if first <= last => Ok(first..=last),
-                _ => Err(format!("{item:?} is no code point; write U+E9, E9 or U+20-7E (up to U+10FFFF)")),
+                _ => Err(format!(
+                    "{item:?} is no code point; write U+E9, E9, U+20-7E or U+4?? (up to U+10FFFF)"
+                )),
             }
         };
         Ok(Self(items(text, parse)?))
