@@ -62,6 +62,14 @@ pub enum Error {
         /// How much the format allows.
         limit: u64,
     },
+    /// The font has not as many glyphs as when its models were made: glyphs were taken out or added, so that the models' numbers stand
+    /// for other glyphs.
+    Renumbered {
+        /// The glyphs of the font that was converted.
+        models: u32,
+        /// The glyphs that this font has.
+        font: u32,
+    },
     /// A glyph's outline is not the one that its model was made for.
     StaleModel(u32),
     /// The font has no glyph with this number.
@@ -163,6 +171,11 @@ impl fmt::Display for Error {
             Self::ModelTooLarge { glyph, what, count, limit } => {
                 write!(f, "the model of glyph {glyph} has {count} {what}, {limit} are allowed")
             }
+            Self::Renumbered { models, font } => write!(
+                f,
+                "the models in 'Nfrt' are those of a font with {models} glyphs, and this one has {font}: glyphs were renumbered after \
+                 the conversion"
+            ),
             Self::StaleModel(glyph) => {
                 write!(f, "the outline of glyph {glyph} was changed after its model was made")
             }

@@ -15,6 +15,8 @@ use crate::model::gridfit::GridFit;
 #[cfg(feature = "networks")]
 use crate::network::Network;
 use crate::table::outline::Advances;
+use crate::table::outline_hash;
+use read_fonts::TableProvider;
 
 /// Decodes a font's glyphs, and keeps what composed glyphs share.
 #[derive(Debug)]
@@ -134,6 +136,30 @@ fn network(_: &crate::table::Table<'_>, glyph: u32, _: &Limits) -> Result<Drawn,
 }
 
 impl Font {
+    /// Whether the outlines in this font are the ones that the models were trained from. Reads all of them. Where they were dropped,
+    /// there is nothing that could differ.
+    pub fn outlines_match(&self) -> bool {
+        if self.outlines_dropped() {
+            return true;
+        }
+        let glyf = self.model().tables().glyf();
+        let is_same = glyf.is_ok_and(|glyf| {
+            outline_hash(self.units_per_em(), glyf.offset_data().as_bytes()) == self.header().outline_hash
+        });
+        // Other bytes may stand for the same outlines, as after compression to WOFF2. Outline models know theirs.
+        is_same || self.outline_models_match()
+    }
+
+    /// Whether all models are outline models, and each belongs to the outline that the font has.
+    fn outline_models_match(&self) -> bool {
+        let Ok(table) = self.table() else { return false };
+        let mut decoder = Decoder::new(self, Limits::default());
+        self.modelled_glyphs().all(|glyph| {
+            table.outlines().find(glyph).is_some()
+                && !matches!(decoder.glyph_with(glyph, 0..1, |_| None), Err(Error::StaleModel(_)))
+        })
+    }
+
     /// Decodes a glyph, with the default limits.
     pub(crate) fn decode(&self, glyph: u32) -> Result<Glyph, Error> {
         Decoder::new(self, Limits::default()).glyph(glyph)

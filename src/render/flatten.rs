@@ -56,9 +56,10 @@ impl Polygons {
             + self.ends.capacity() * size_of::<usize>()
     }
 
-    /// Adds an outline whose points are at `places`, in 1/64 pixel, moved by `offset` in the same.
+    /// Adds an outline whose points are at `places`, in 1/64 pixel, moved by `offset` in the same. Contours of one or two points, which
+    /// fonts use as anchors, have no area and are left out.
     pub(super) fn add(&mut self, outline: &OutlinePoints, places: &[Vec<i32>; 2], offset: Point) {
-        for contour in outline.contours() {
+        for contour in outline.contours().filter(|contour| contour.len() > 2) {
             self.add_contour(outline, places, contour, offset);
         }
     }

@@ -60,15 +60,18 @@ impl Font {
     ///
     /// `NotAFont`, `NoSuchFont`; `NotConverted` for a font without an `Nfrt` table; `MissingTable`, `MalformedTable`
     /// or `UnitsPerEm` for a font whose header, metrics or character map cannot be read; `MalformedModels` or
-    /// `UnknownVersion`.
+    /// `UnknownVersion`; `Renumbered` if glyphs were taken out or added after the conversion.
     pub fn from_index(data: impl AsRef<[u8]> + Send + Sync + 'static, index: u32) -> Result<Self, Error> {
         let data = Blob::Shared(Arc::new(data));
         let file = open(&data, index)?;
         let table = range(&file, &data, table::TAG)?.ok_or(Error::NotConverted)?;
         let units_per_em = head_units(&file)?;
         check_tables(&file, &data)?;
-        let glyph_count = file.maxp().map_err(|_| malformed(b"maxp"))?.num_glyphs().into();
+        let glyph_count: u32 = file.maxp().map_err(|_| malformed(b"maxp"))?.num_glyphs().into();
         let header = *Table::parse(&data[table.clone()])?.header();
+        if header.glyph_count != 0 && u32::from(header.glyph_count) != glyph_count {
+            return Err(Error::Renumbered { models: header.glyph_count.into(), font: glyph_count });
+        }
         // Table::parse has checked the sizes, head_units the units.
         let scale = header.scale(units_per_em).ok_or(Error::UnitsPerEm(units_per_em))?;
         let font = model::Font::new(data.clone(), index).ok_or(Error::NotAFont)?;
@@ -160,19 +163,6 @@ impl Font {
     /// Whether the glyphs that have models have no outlines in this font.
     pub fn outlines_dropped(&self) -> bool {
         self.header().outlines_dropped
-    }
-
-    /// Whether the outlines in this font are the ones that the models were trained from. Reads all of them.
-    /// Where they were dropped, there is nothing that could differ.
-    pub fn outlines_match(&self) -> bool {
-        if self.outlines_dropped() {
-            return true;
-        }
-        let glyf = self.0.font.tables().glyf();
-        glyf.is_ok_and(|glyf| {
-            table::outline_hash(self.units_per_em(), glyf.offset_data().as_bytes())
-                == self.header().outline_hash
-        })
     }
 }
 

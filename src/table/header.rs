@@ -52,6 +52,8 @@ pub struct Header {
     pub rank: u8,
     /// Edge of a field cell in 1/10000 em.
     pub cell: u16,
+    /// The glyphs of the font that the models are numbered for; 0 if the table does not say.
+    pub glyph_count: u16,
 }
 
 impl Header {

@@ -76,6 +76,7 @@ impl<'a> Table<'a> {
             knots: u8_at(34)?,
             rank: u8_at(35)?,
             cell: u16_at(36)?,
+            glyph_count: u16_at(38)?,
         };
         if header.first_ppem == 0
             || header.first_ppem > header.last_ppem

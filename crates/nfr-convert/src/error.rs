@@ -86,6 +86,9 @@ impl From<nfr::Error> for Error {
             }
             Cause::NotConverted => Self::Unsupported(format!("{error}; make one with nfr-convert")),
             Cause::UnknownVersion { .. } => Self::Unsupported(again()),
+            Cause::Renumbered { .. } => Self::InvalidParameter(format!(
+                "{error}; make the subset of the original font, and convert that"
+            )),
             Cause::StaleModel(_) => Self::InvalidParameter(again()),
             Cause::MalformedModels { .. } | Cause::MalformedModel { .. } => Self::Malformed(again()),
             Cause::ModelTooLarge { .. } => Self::LimitExceeded(again()),

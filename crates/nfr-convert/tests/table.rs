@@ -117,12 +117,12 @@ proptest! {
     fn a_table_is_read_as_it_was_written(
         (scale, models) in scale_and(|sizes| vec((any::<u16>(), weights(sizes)), 0..5)),
         target in prop_oneof![Just(Target::Smooth), Just(Target::Mono), Just(Target::Lcd)],
-        (outline_hash, seed, steps, knots, rank, cell) in any::<(u64, u64, u16, u8, u8, u16)>(),
+        (outline_hash, seed, steps, knots, rank, cell, glyph_count) in any::<(u64, u64, u16, u8, u8, u16, u16)>(),
     ) {
         let mut models: Vec<_> = models.into_iter().map(|(gid, weights)| GlyphModel { gid, weights }).collect();
         models.sort_by_key(|m| m.gid);
         models.dedup_by_key(|m| m.gid);
-        let header = Header { target, outline_hash, seed, steps, knots, rank, cell, ..header(scale) };
+        let header = Header { target, outline_hash, seed, steps, knots, rank, cell, glyph_count, ..header(scale) };
         let (bytes, lengths) = writer::write(&header, &models, &[], &[], scale).unwrap();
         let table = Table::parse(&bytes).unwrap();
         prop_assert_eq!(table.header(), &header);

@@ -64,6 +64,7 @@ pub fn with_networks(
         last_ppem,
         outline_hash: outline_hash(&font)?,
         outlines_dropped: false,
+        glyph_count: glyph_count(&font)?.try_into().unwrap_or(0),
         ..*about
     };
     let scale = header.scale(head_units(&font)?).ok_or_else(|| {

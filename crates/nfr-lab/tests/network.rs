@@ -36,6 +36,7 @@ const ABOUT: Header = Header {
     knots: 0,
     rank: 0,
     cell: 0,
+    glyph_count: 0,
 };
 
 /// The bytes of Liberation Sans.

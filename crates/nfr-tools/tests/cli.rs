@@ -4,7 +4,14 @@
 
 mod common;
 
+use std::collections::BTreeSet;
+
 use common::{Directory, SANS, collection, nfr, nfr_convert, sans, sans_with};
+use nfr::internals::table::TAG;
+use nfr_convert::assemble::assemble;
+use read_fonts::FontRef;
+use read_fonts::types::Tag;
+use write_fonts::FontBuilder;
 
 /// Converts a font file with few glyphs at few sizes, should it get that far.
 fn convert(directory: &Directory, input: &str, more: &[&str]) -> common::Run {
@@ -88,6 +95,21 @@ fn a_file_that_is_not_there_is_named() {
     }
 }
 
+/// Liberation Sans without hint programs, and with some tables more.
+fn unhinted(with: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
+    let data = sans();
+    let stripped = assemble(&FontRef::new(&data).unwrap(), &[], &BTreeSet::new()).unwrap();
+    let font = FontRef::new(&stripped).unwrap();
+    let mut builder = FontBuilder::new();
+    for (tag, bytes) in with {
+        builder.add_raw(Tag::new(tag), bytes.to_vec());
+    }
+    for record in font.table_directory().table_records().iter().filter(|record| record.tag() != TAG) {
+        builder.add_raw(record.tag(), font.table_data(record.tag()).unwrap().as_bytes().to_vec());
+    }
+    builder.build()
+}
+
 #[test]
 fn a_font_that_cannot_teach_is_refused_with_the_reason() {
     let directory = Directory::new();
@@ -96,7 +118,10 @@ fn a_font_that_cannot_teach_is_refused_with_the_reason() {
         convert(&directory, &input, &[]).fails_with(&[&["in.ttf"], parts].concat());
     };
     refused(&sans_with(&[b"glyf", b"loca"], &[]), &["glyf", "pass a TrueType font"]);
-    refused(&sans_with(&[b"fpgm", b"prep"], &[]), &["no hint programs", "pass a hinted font"]);
+    refused(&unhinted(&[]), &["no hint programs", "pass a hinted font"]);
+    // What tools write into fonts without hints: PUSHW 511, SCANCTRL, PUSHB 4, SCANTYPE.
+    let prep: &[u8] = &[0xb8, 0x01, 0xff, 0x85, 0xb0, 0x04, 0x8d];
+    refused(&unhinted(&[(b"prep", prep)]), &["no hint programs", "pass a hinted font"]);
     refused(&sans_with(&[], &[(b"Nfrt", b"models")]), &["'Nfrt'", "already"]);
 }
 
@@ -210,7 +235,7 @@ fn a_failure_leaves_an_existing_output_as_it_was() {
     let directory = Directory::new();
     let output = directory.write("out.ttf", b"precious");
     nfr_convert(&[SANS, &output, "--text", "一"]).fails_with(&["U+4E00"]);
-    let unhinted = directory.write("in.ttf", &sans_with(&[b"fpgm", b"prep"], &[]));
+    let unhinted = directory.write("in.ttf", &unhinted(&[]));
     nfr_convert(&[&unhinted, &output, "--gids", "36", "--ppem", "12"]).fails_with(&["no hint programs"]);
     assert_eq!(std::fs::read(&output).unwrap(), b"precious");
     assert_eq!(directory.files(), ["in.ttf", "out.ttf"]);

@@ -152,7 +152,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) })]
 
     #[test]
-    fn points_that_are_implied_need_not_be_written(contour in contour(-2000..2000, 1..12)) {
+    fn points_that_are_implied_need_not_be_written(contour in contour(-2000..2000, 3..12)) {
         let (short, long) = (polygon(&contour), polygon(&explicit(&contour)));
         prop_assert_eq!(from_anywhere(&short), from_anywhere(&long));
     }
@@ -186,7 +186,7 @@ proptest! {
     #[test]
     fn an_outline_is_filled_as_zeno_fills_it(
         (width, height) in (1usize..20, 1usize..20),
-        contours in vec(contour(0..64 * 20, 1..9), 1..4),
+        contours in vec(contour(0..64 * 20, 3..9), 1..4),
     ) {
         let [right, top] = [width, height].map(|pixels| pixels as i32 * 64);
         let inside = |(point, on): &Stop| ([point[0] % (right + 1), point[1] % (top + 1)], *on);
@@ -220,5 +220,21 @@ proptest! {
         let mut mask = Mask::new(path.as_slice());
         mask.origin(Origin::BottomLeft).size(width as u32, height as u32);
         prop_assert_eq!(pixels, mask.render().0);
+    }
+}
+
+#[test]
+fn contours_of_one_or_two_points_draw_nothing() {
+    for count in 1..4u16 {
+        let points = OutlinePoints {
+            coordinates: [vec![0, 100, 50], vec![0, 0, 100]].map(|v| v[..usize::from(count)].to_vec()),
+            on_curve: vec![true; count.into()],
+            ends: vec![count],
+            is_unfit: false,
+        };
+        let places = points.coordinates.each_ref().map(|v| v.iter().map(|v| i32::from(*v)).collect());
+        let mut polygons = Polygons::default();
+        polygons.add(&points, &places, [0, 0]);
+        assert_eq!(polygons.ends.is_empty(), count < 3, "{count} points");
     }
 }

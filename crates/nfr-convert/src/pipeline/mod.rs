@@ -15,6 +15,7 @@ use crate::compose::Decomposition;
 use crate::conversion::{Conversion, GlyphReport, Progress};
 use crate::error::Error;
 use crate::input::open::{has_models, open};
+use crate::input::select::glyph_count;
 use crate::options::{CELL_UNITS_PER_EM, Options};
 use crate::partial::Partial;
 use crate::predict::Predictor;
@@ -148,5 +149,6 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
         knots: options.capacity.knots as u8,
         rank: options.capacity.rank as u8,
         cell: (options.capacity.cell * CELL_UNITS_PER_EM).round() as u16,
+        glyph_count: glyph_count(font)?.try_into().unwrap_or(0),
     })
 }

@@ -8,6 +8,7 @@ pub(crate) mod unhinted;
 
 use std::sync::OnceLock;
 
+use read_fonts::tables::glyf::Glyph;
 use read_fonts::{FontRef, TableProvider};
 use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, ScalerFont, ScalerSource};
 
@@ -53,9 +54,9 @@ impl Teacher {
                 "the font is variable; make a static instance first (fonttools varLib.instancer)".into(),
             ));
         }
-        if font.fpgm().is_err() && font.prep().is_err() {
+        if !has_glyph_programs(font) {
             return Err(Error::Unsupported(
-                "the font has no hint programs ('fpgm', 'prep'), so there is nothing to learn; pass a hinted font"
+                "the font's glyphs have no hint programs, so there is nothing to learn; pass a hinted font"
                     .into(),
             ));
         }
@@ -200,6 +201,19 @@ fn interpreter(
         .with_preserve_linear_metrics(false)
         .with_pedantic(on_error == OnHintError::Fail);
     ScalerFont::hinted(font, f32::from(ppem), options)
+}
+
+/// Whether any glyph has a hint program. Without one no point is moved, whatever `fpgm` and `prep` do: many fonts without hints have a
+/// `prep` of seven bytes, which switches drop-out control on.
+fn has_glyph_programs(font: &FontRef<'_>) -> bool {
+    let (Ok(loca), Ok(glyf), Ok(maxp)) = (font.loca(None), font.glyf(), font.maxp()) else { return false };
+    (0..u32::from(maxp.num_glyphs())).any(|glyph| match loca.get_glyf(glyph.into(), &glyf) {
+        Ok(Some(Glyph::Simple(simple))) => !simple.instructions().is_empty(),
+        Ok(Some(Glyph::Composite(composite))) => {
+            composite.instructions().is_some_and(|program| !program.is_empty())
+        }
+        _ => false,
+    })
 }
 
 /// skrifa's name of a target.

@@ -103,8 +103,7 @@ fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, payload: usize)
     out.extend(header.steps.to_be_bytes());
     out.extend([header.knots, header.rank]);
     out.extend(header.cell.to_be_bytes());
-    // Reserved.
-    out.extend([0, 0]);
+    out.extend(header.glyph_count.to_be_bytes());
     debug_assert_eq!(out.len(), COUNTS_AT);
 }
 
