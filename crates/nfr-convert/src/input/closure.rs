@@ -125,7 +125,7 @@ fn substitute(
 fn components(loca: &Loca<'_>, glyf: &Glyf<'_>, glyph: GlyphId) -> Vec<GlyphId> {
     match loca.get_glyf(glyph, glyf) {
         Ok(Some(Glyph::Composite(composite))) => {
-            composite.components().map(|component| component.glyph.into()).collect()
+            composite.components().map(|component| component.glyph).collect()
         }
         _ => Vec::new(),
     }
