@@ -67,6 +67,13 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+impl Error {
+    /// Whether the same conversion may succeed another time: it lacked time, room or a device.
+    pub fn may_pass(&self) -> bool {
+        matches!(self, Self::TimeLimit | Self::Io(_) | Self::Device(_))
+    }
+}
+
 impl From<nfr::Error> for Error {
     fn from(error: nfr::Error) -> Self {
         use nfr::Error as Cause;

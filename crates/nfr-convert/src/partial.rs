@@ -19,6 +19,8 @@ use nfr::internals::table::{FNV_BASIS, codec, fnv1a};
 
 /// Begins the file; a key of 8 bytes follows.
 const MAGIC: &[u8; 14] = b"nfr partial 3\n";
+/// What the work files of all versions begin with.
+const ANY_MAGIC: &[u8] = b"nfr partial ";
 
 /// The work file.
 #[derive(Debug)]
@@ -29,6 +31,8 @@ pub struct Partial {
     file: Mutex<Option<File>>,
     /// The encoded weights of each glyph that the file held.
     found: HashMap<u16, Vec<u8>>,
+    /// Where the work file of another conversion was kept.
+    kept_aside: Option<PathBuf>,
 }
 
 /// A hash of everything that the models depend on: this version, the input and the options, except the number of
@@ -41,27 +45,25 @@ fn key(input: &[u8], options: &Options) -> u64 {
 
 impl Partial {
     /// Prepares the work file of a conversion. It is created when the first glyphs are ready. With `resume`, the glyphs
-    /// of an earlier conversion in it are used.
+    /// of an earlier conversion in it are used. Without, the work file of a conversion of another font or with other options is
+    /// kept aside.
     ///
     /// # Errors
     ///
-    /// `Io` if the file exists without `resume`, if it belongs to another conversion, or if it cannot be read.
+    /// `Io` without `resume` if the file has glyphs of this conversion or is no work file, with it if it belongs to another
+    /// conversion, and if it cannot be read or moved.
     pub fn open(path: &Path, input: &[u8], options: &Options, resume: bool) -> Result<Self, Error> {
         let mut partial = Self {
             path: path.to_owned(),
             key: key(input, options),
             file: Mutex::default(),
             found: HashMap::new(),
+            kept_aside: None,
         };
         let name = path.display();
         if !resume {
-            return match path.try_exists() {
-                Ok(false) => Ok(partial),
-                Ok(true) => Err(Error::Io(format!(
-                    "{name} holds an unfinished conversion; go on with it with --resume, or delete it"
-                ))),
-                Err(e) => Err(partial.failed("read", &e)),
-            };
+            partial.make_way()?;
+            return Ok(partial);
         }
         let mut file = match OpenOptions::new().read(true).write(true).open(path) {
             Ok(file) => file,
@@ -97,12 +99,47 @@ impl Partial {
         Ok(partial)
     }
 
+    /// Moves the file of another conversion away, and removes one without glyphs.
+    fn make_way(&mut self) -> Result<(), Error> {
+        let bytes = match std::fs::read(&self.path) {
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(()),
+            Err(e) => return Err(self.failed("read", &e)),
+        };
+        let is_empty = self.heading().starts_with(&bytes) || self.read(&bytes).is_some();
+        let name = self.path.display();
+        if is_empty && self.found.is_empty() {
+            return std::fs::remove_file(&self.path).map_err(|e| self.failed("delete", &e));
+        }
+        if !self.found.is_empty() {
+            return Err(Error::Io(format!(
+                "{name} holds an unfinished conversion; go on with it with --resume, or delete it"
+            )));
+        }
+        if !bytes.starts_with(ANY_MAGIC) {
+            return Err(Error::Io(format!(
+                "{name} is no work file of nfr-convert and is in its place; move it away, or choose another output"
+            )));
+        }
+        // Its own hash makes the name: no other file that was kept aside has it.
+        let mut aside = self.path.clone().into_os_string();
+        aside.push(format!(".{:016x}", fnv1a(FNV_BASIS, &bytes)));
+        std::fs::rename(&self.path, &aside).map_err(|e| self.failed("move", &e))?;
+        self.kept_aside = Some(aside.into());
+        Ok(())
+    }
+
+    /// Where the work file of another conversion was kept, if there was one in this one's place.
+    pub fn kept_aside(&self) -> Option<&Path> {
+        self.kept_aside.as_deref()
+    }
+
     /// The number of glyphs that the file held.
     pub fn found(&self) -> usize {
         self.found.len()
     }
 
-    /// Deletes the file once the font is written.
+    /// Deletes the file once the font is written, or if a failure would come again.
     ///
     /// # Errors
     ///

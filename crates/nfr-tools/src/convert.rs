@@ -174,6 +174,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
     let partial = output.partial();
     let partial = partial.map(|path| Partial::open(&path, &input, &options, args.resume)).transpose()?;
+    if let Some(aside) = partial.as_ref().and_then(Partial::kept_aside) {
+        reporter.note(&format!(
+            "the work file of another conversion to this output is kept as {}",
+            aside.display()
+        ));
+    }
     if let Some(found) = partial.as_ref().map(Partial::found).filter(|found| *found > 0) {
         reporter.note(&format!("going on after {}", glyph_count_text(found)));
     }
@@ -181,7 +187,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let converted = resume(&input, &options, &reporter, partial.as_ref());
     let elapsed = reporter.elapsed();
     drop(reporter);
-    let conversion = converted.map_err(|e| Failure::from(e).at(args.input.display()))?;
+    let conversion = match converted {
+        Ok(conversion) => conversion,
+        Err(e) => {
+            if !e.may_pass() {
+                // What made it fail is told; that the file stays is worth no other error.
+                drop(partial.map(Partial::remove));
+            }
+            return Err(Failure::from(e).at(args.input.display()));
+        }
+    };
     // The figures are those of the finished file, not of the models in memory.
     let names = [&args.input, &args.output].map(|path| path.display().to_string());
     let names = [names[0].as_str(), &names[1]];

@@ -212,11 +212,28 @@ fn the_converter_leaves_no_work_file_and_does_not_overwrite_one() {
     let directory = Directory::new();
     let (output, _) = (directory.name("out.ttf"), directory.write("out.ttf.partial", b"precious"));
     let args = ["--text", "i", "--ppem", "12", SANS, &output];
-    nfr_convert(&args).fails_with(&["out.ttf.partial", "--resume", "delete"]);
+    nfr_convert(&args).fails_with(&["out.ttf.partial", "no work file", "another output"]);
     nfr_convert(&[&args[..], &["--resume"]].concat()).fails_with(&["out.ttf.partial", "another font"]);
     assert_eq!(std::fs::read(directory.path("out.ttf.partial")).unwrap(), b"precious");
     std::fs::remove_file(directory.path("out.ttf.partial")).unwrap();
     nfr_convert(&[&args[..], &["--resume"]].concat()).succeeds();
+    assert_eq!(directory.files(), ["out.ttf"]);
+}
+
+#[test]
+fn the_work_file_of_another_conversion_is_kept_aside_and_an_empty_one_is_replaced() {
+    let directory = Directory::new();
+    let output = directory.name("out.ttf");
+    let args = ["--text", "i", "--ppem", "12", SANS, &output];
+    directory.write("out.ttf.partial", b"nfr partial 3\n12345678 and a record of another font");
+    let told = nfr_convert(&args).succeeds().stderr;
+    let aside: Vec<String> =
+        directory.files().into_iter().filter(|name| name.starts_with("out.ttf.partial")).collect();
+    assert!(aside.len() == 1 && told.contains(&aside[0]), "{aside:?}: {told}");
+    assert!(std::fs::read(directory.path(&aside[0])).unwrap().ends_with(b"another font"));
+    std::fs::remove_file(directory.path(&aside[0])).unwrap();
+    directory.write("out.ttf.partial", b"nfr partial 3\n");
+    assert_eq!(nfr_convert(&[&args[..], &["--quiet"]].concat()).succeeds().stderr, "");
     assert_eq!(directory.files(), ["out.ttf"]);
 }
 
