@@ -41,7 +41,7 @@ pub struct Conversion {
     pub font: Vec<u8>,
     /// One report for each glyph of the table, in ascending order: those selected, less those left out, and parts of them.
     pub glyphs: Vec<GlyphReport>,
-    /// The selected glyphs that have no model, ascending: those whose contours hinting changes, with
+    /// The selected glyphs that have no model, ascending: those that cannot be drawn with their hints, and those whose contours hinting changes, with
     /// [`Shape::Outline`](crate::Shape::Outline), and with [`Shape::Auto`](crate::Shape::Auto) in a build without the feature `train`.
     pub left_out: Vec<u16>,
     /// The sums over all selected glyphs that have models, and all sizes.

@@ -33,7 +33,7 @@ fn converted(data: &[u8], text: &str, target: Target, quality: f32) -> Conversio
 fn at_quality_100_bitmaps_and_advances_are_those_of_the_hints() {
     for name in FONTS {
         let data = font(name);
-        for (target, most) in [(Target::Smooth, 150.0), (Target::Mono, 320.0)] {
+        for (target, most) in [(Target::Smooth, 150.0), (Target::Mono, 340.0)] {
             let text = ascii() + "éÅ";
             let conversion = converted(&data, &text, target, 100.0);
             let figures = conversion.sums.figures();
@@ -198,6 +198,24 @@ fn other_bytes_for_the_same_outline_are_no_other_outline() {
     let other = with_changed_outline(&converted, gids(&data, "o")[0]);
     assert!(!Font::new(other.clone()).unwrap().outlines_match());
     assert!(FontPair::open(&data, 0, &other).is_err());
+}
+
+#[test]
+fn a_glyph_that_cannot_be_drawn_is_left_out_and_the_others_are_converted() {
+    let data = font("LiberationSans-Regular");
+    let (a, o) = (gids(&data, "a")[0], gids(&data, "o")[0]);
+    // A composite glyph whose only component is itself, at (0, 0).
+    let [high, low] = o.to_be_bytes();
+    let endless = with_table(&data, b"glyf", |font, glyf| {
+        let at = font.loca(None).unwrap().get_raw(o.into()).unwrap() as usize;
+        glyf[at..at + 16].copy_from_slice(&[255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, high, low, 0, 0]);
+    });
+    let conversion = converted(&endless, "ao", Target::Smooth, 50.0);
+    assert_eq!(conversion.left_out, [o]);
+    let font = Font::new(conversion.font).unwrap();
+    assert!(font.has_model(a.into()) && !font.has_model(o.into()));
+    let alone = convert(&endless, &options(&endless, "o", Target::Smooth, 50.0), &Silent).unwrap_err();
+    assert!(alone.to_string().contains(&format!("glyph {o}")), "{alone}");
 }
 
 #[test]

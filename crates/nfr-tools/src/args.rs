@@ -56,9 +56,9 @@ pub struct SelectionArgs {
     /// Glyph names, as in a,eacute
     #[arg(long, help_heading = HEADING, value_name = "LIST")]
     glyphs: Option<GlyphNames>,
-    /// Fail where the font lacks a character that is asked for, instead of warning
+    /// Fail where the font lacks a character that is asked for, or a glyph cannot be converted, instead of warning
     #[arg(long, help_heading = HEADING)]
-    strict: bool,
+    pub strict: bool,
 }
 
 impl SelectionArgs {

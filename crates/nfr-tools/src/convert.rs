@@ -197,6 +197,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             return Err(Failure::from(e).at(args.input.display()));
         }
     };
+    if args.selection.strict && !conversion.left_out.is_empty() {
+        return Err(Failure::failed(format!(
+            "{} cannot be converted, first of them glyph {}; leave out --strict to convert the rest",
+            glyph_count_text(conversion.left_out.len()),
+            conversion.left_out[0]
+        )));
+    }
     // The figures are those of the finished file, not of the models in memory.
     let names = [&args.input, &args.output].map(|path| path.display().to_string());
     let names = [names[0].as_str(), &names[1]];

@@ -218,6 +218,11 @@ fn a_glyph_whose_contours_hinting_changes_does_not_stop_a_conversion() {
     assert!(warnings[1].contains("not exact for 1 glyph without a model"), "{warnings:?}");
     let report: Value = serde_json::from_str(&std::fs::read_to_string(&report).unwrap()).unwrap();
     assert_eq!((&report["left_out"], &report["comparison"]["glyphs"]), (&serde_json::json!([72]), &2.into()));
+    nfr_convert(&[&outline[..], &["--strict", "--quiet"]].concat()).fails_with(&[
+        "1 glyph cannot be converted",
+        "glyph 72",
+        "--strict",
+    ]);
     nfr(&["verify", &input, &output]).succeeds();
     assert!(nfr(&["info", &output]).succeeds().stdout.contains("2 of 2620 have models"));
     let run = nfr_convert(&["--no-closure", "--text", "aeo", "--ppem", "11-12", &input, &output]).succeeds();

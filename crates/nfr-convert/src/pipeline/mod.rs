@@ -3,6 +3,7 @@
 mod fields;
 mod glyphs;
 mod outlines;
+mod readable;
 mod training;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,6 +25,7 @@ use glyphs::Stages;
 use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
 use outlines::Learned;
+use readable::readable;
 
 /// Converts a font: finds or trains a model for each glyph and writes a font that carries them instead of hints.
 ///
@@ -68,6 +70,8 @@ pub fn resume(
     let known_ppem = options.ppem.clone().step_by(options.ppem_step.into());
     let sizes = known_ppem.map(|ppem| teacher.at(ppem)).collect::<Result<Vec<_>, _>>()?;
     warn_of_unhinted(&sizes, progress)?;
+    let (gids, unreadable) = readable(&sizes, options, progress)?;
+    let options = &Options { gids, ..options.clone() };
     let mut glyphs = if options.compose {
         let exact = options.uses_outlines() && options.fidelity.is_exact();
         Decomposition::find(&font, &teacher, &sizes, scale, &options.gids, exact)?
@@ -79,7 +83,7 @@ pub fn resume(
     glyphs.predict_part_offsets(&predictor, scale);
     let conversion =
         Stages { teacher: &teacher, sizes: &sizes, scale, predictor: &predictor, options, progress };
-    let (table, measured, left_out) = if options.uses_outlines() {
+    let (table, measured, mut left_out) = if options.uses_outlines() {
         let Learned { table, measured, left_out } =
             outlines::learn(conversion, &font, partial, &header, &glyphs)?;
         (table, measured, left_out)
@@ -97,6 +101,8 @@ pub fn resume(
     for gid in options.gids.iter().filter(|gid| left_out.binary_search(gid).is_err()) {
         sums.merge(measured.get(gid).ok_or(Error::MissingGlyph(*gid))?);
     }
+    left_out.extend(unreadable);
+    left_out.sort_unstable();
     let dropped = if options.drop_outlines { measured.keys().copied().collect() } else { BTreeSet::new() };
     Ok(Conversion {
         font: assemble(&font, &table, &dropped)?,
