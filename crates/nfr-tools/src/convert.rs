@@ -1,11 +1,11 @@
 //! `nfr-convert`: from a hinted font to a neural one.
 
-use std::io::{self, Write};
+mod summary;
+
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use serde::Serialize;
 
 use super::args::{SelectionArgs, all_cores, jobs, shape, target};
 use super::exactness::exceptions;
@@ -15,14 +15,16 @@ use super::progress::{Reporter, Verbosity, print_line};
 use nfr::Target;
 use nfr_convert::closure::{LayoutFeatures, close};
 use nfr_convert::compare::fonts::FontPair;
-use nfr_convert::compare::report::{Report, glyph_count_text};
+use nfr_convert::compare::report::glyph_count_text;
+use nfr_convert::compare::threshold::FailOn;
 use nfr_convert::open::{has_models, open};
 use nfr_convert::options::Backend;
 use nfr_convert::partial::Partial;
 use nfr_convert::ppem::PpemList;
 use nfr_convert::select::{glyph_count, glyph_names};
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Conversion, GlyphReport, Options, Quality, Shape, resume};
+use nfr_convert::{Options, Quality, Shape, resume};
+use summary::{About, print_summary, summary};
 
 /// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
 /// programs
@@ -90,6 +92,11 @@ pub struct Args {
     /// end.
     #[arg(long)]
     resume: bool,
+    /// Write no font, and exit with 1, if any condition holds, as in 'mae>0.0001 || bad16>0.001'
+    ///
+    /// As for nfr diff, on the figures of all glyphs at the sizes of --ppem.
+    #[arg(long, value_name = "EXPR")]
+    fail_on: Option<FailOn>,
     /// Write a report as JSON
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
@@ -99,48 +106,6 @@ pub struct Args {
     /// Print a line for each glyph
     #[arg(long, short)]
     verbose: bool,
-}
-
-/// The contents of the file of `--report`.
-#[derive(Debug, Serialize)]
-struct ReportFile<'r> {
-    input: String,
-    output: String,
-    target: &'static str,
-    ppem: String,
-    seed: u64,
-    glyphs: Vec<GlyphEntry>,
-    /// The glyphs that have no model.
-    left_out: &'r [u16],
-    table_bytes: usize,
-    bytes_per_glyph: f64,
-    /// The hint programs that the table stands in place of.
-    hint_bytes: HintBytesEntry,
-    input_bytes: usize,
-    output_bytes: usize,
-    mae: f64,
-    bad16: f64,
-    seconds: f64,
-    /// The comparison of the written font with its original.
-    comparison: &'r Report,
-}
-
-#[derive(Debug, Serialize)]
-struct HintBytesEntry {
-    glyph_programs: usize,
-    fpgm: usize,
-    prep: usize,
-    cvt: usize,
-    total: usize,
-}
-
-#[derive(Debug, Serialize)]
-struct GlyphEntry {
-    gid: u16,
-    bytes: usize,
-    composed: bool,
-    mae: f64,
-    bad16: f64,
 }
 
 fn backend(name: &str) -> Result<Backend, String> {
@@ -211,13 +176,25 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let mut gids = options.gids.clone();
     gids.retain(|gid| conversion.left_out.binary_search(gid).is_err());
     let comparison = pair.report(names, &gids, &args.ppem, args.jobs)?;
+    let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&comparison));
+    if !failures.is_empty() {
+        partial.map(Partial::remove).transpose()?;
+        return Err(Failure::failed(format!("{}; no font is written", failures.join("; "))));
+    }
     if options.fidelity.is_exact() && !args.quiet {
         warn_of_exceptions(&pair, names, args, &options)?;
     }
     output.write(&conversion.font)?;
     partial.map(Partial::remove).transpose()?;
 
-    let contents = summary(args, &input, &conversion, &comparison, elapsed.as_secs_f64());
+    let about = About {
+        input: args.input.display().to_string(),
+        output: args.output.display().to_string(),
+        target: args.target.name(),
+        ppem: args.ppem.to_string(),
+        seed: args.seed,
+    };
+    let contents = summary(about, &input, &conversion, &comparison, elapsed.as_secs_f64());
     if let Some(file) = report {
         let json = serde_json::to_string_pretty(&contents).map_err(|e| Failure::failed(e.to_string()))?;
         file.write((json + "\n").as_bytes())?;
@@ -320,78 +297,4 @@ fn prepare(
         ..Options::default().with_quality(args.quality)
     };
     Ok(Prepared { options, reporter, added })
-}
-
-fn summary<'r>(
-    args: &Args,
-    input: &[u8],
-    conversion: &'r Conversion,
-    comparison: &'r Report,
-    seconds: f64,
-) -> ReportFile<'r> {
-    let glyph = |g: &GlyphReport| GlyphEntry {
-        gid: g.gid,
-        bytes: g.bytes,
-        composed: g.composed,
-        mae: g.mae,
-        bad16: g.bad16,
-    };
-    let figures = &comparison.totals.neural.figures;
-    let hints = &conversion.hint_bytes;
-    ReportFile {
-        input: args.input.display().to_string(),
-        output: args.output.display().to_string(),
-        target: args.target.name(),
-        ppem: args.ppem.to_string(),
-        seed: args.seed,
-        glyphs: conversion.glyphs.iter().map(glyph).collect(),
-        left_out: &conversion.left_out,
-        table_bytes: conversion.table_bytes,
-        bytes_per_glyph: comparison.header.bytes_per_glyph,
-        hint_bytes: HintBytesEntry {
-            glyph_programs: hints.glyph_programs,
-            fpgm: hints.fpgm,
-            prep: hints.prep,
-            cvt: hints.cvt,
-            total: hints.total(),
-        },
-        input_bytes: input.len(),
-        output_bytes: conversion.font.len(),
-        mae: figures.mae,
-        bad16: figures.bad16,
-        seconds,
-        comparison,
-    }
-}
-
-fn print_summary(report: &ReportFile<'_>, added: usize) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    let unhinted = &report.comparison.totals.unhinted.figures;
-    let added = match added {
-        0 => String::new(),
-        count => format!(", {count} of them for layout, composites, .notdef and the space"),
-    };
-    let composed = match report.glyphs.iter().filter(|glyph| glyph.composed).count() {
-        0 => String::new(),
-        count => format!(", {count} of them put together from others"),
-    };
-    let count = glyph_count_text(report.glyphs.len());
-    writeln!(out, "{}: {count} at {} ppem{composed}{added}", report.output, report.ppem)?;
-    writeln!(out, "table   {} bytes, {:.1} per glyph", report.table_bytes, report.bytes_per_glyph)?;
-    let hints = &report.hint_bytes;
-    writeln!(
-        out,
-        "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
-        hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
-    )?;
-    let percent = 100.0 * report.output_bytes as f64 / report.input_bytes.max(1) as f64;
-    writeln!(
-        out,
-        "file    {} bytes, {percent:.1} % of the original's {}",
-        report.output_bytes, report.input_bytes
-    )?;
-    writeln!(out, "mae     {:.5} (unhinted {:.5})", report.mae, unhinted.mae)?;
-    writeln!(out, "bad16   {:.2} % (unhinted {:.2} %)", 100.0 * report.bad16, 100.0 * unhinted.bad16)?;
-    writeln!(out, "time    {:.1} s", report.seconds)?;
-    Ok(())
 }

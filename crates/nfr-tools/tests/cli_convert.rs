@@ -319,3 +319,16 @@ fn characters_that_the_font_lacks_are_told_in_one_line() {
     assert!(told.contains("'一' (U+4E00)"), "{told}");
     nfr(&["diff", SANS, &output, "--text", "a一", "--ppem", "12", "--strict"]).fails_with(&["U+4E00"]);
 }
+
+#[test]
+fn a_font_that_misses_a_threshold_is_not_written() {
+    let directory = Directory::new();
+    let output = directory.write("out.ttf", b"precious");
+    let args = [&QUICKEST[..], &[SANS, &output, "--quiet", "--fail-on"]].concat();
+    nfr_convert(&[&args[..], &["bytes_per_glyph>1"]].concat())
+        .fails_with(&["bytes_per_glyph is", "no font is written"]);
+    assert_eq!(std::fs::read(&output).unwrap(), b"precious");
+    nfr_convert(&[&args[..], &["mae>0.5"]].concat()).succeeds();
+    assert_eq!(directory.files(), ["out.ttf"]);
+    nfr_convert(&[&args[..], &["beauty<1"]].concat()).rejects_usage(&["beauty"]);
+}
