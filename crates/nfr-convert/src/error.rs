@@ -94,7 +94,7 @@ impl From<nfr::Error> for Error {
             Cause::NotConverted => Self::Unsupported(format!("{error}; make one with nfr-convert")),
             Cause::UnknownVersion { .. } => Self::Unsupported(again()),
             Cause::Renumbered { .. } => Self::InvalidParameter(format!(
-                "{error}; make the subset of the original font, and convert that"
+                "{error}; make the subset with nfr's module for fontTools (python/), or that of the original font, and convert it"
             )),
             Cause::StaleModel(_) => Self::InvalidParameter(again()),
             Cause::MalformedModels { .. } | Cause::MalformedModel { .. } => Self::Malformed(again()),

@@ -226,5 +226,5 @@ fn a_font_with_another_number_of_glyphs_is_refused() {
     let error = Font::new(fewer).unwrap_err();
     assert_eq!(error, nfr::Error::Renumbered { models: 2620, font: 15 });
     let told = nfr_convert::Error::from(error).to_string();
-    assert!(told.contains("2620") && told.contains("15") && told.contains("convert that"), "{told}");
+    assert!(told.contains("2620") && told.contains("15") && told.contains("convert it"), "{told}");
 }
