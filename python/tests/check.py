@@ -1,7 +1,7 @@
 """Checks the module with a converted font: python check.py NEURAL ORIGINAL NFR.
 
-The table comes back from decompiling and from XML as it was. A subset draws the same bitmaps, with the module and after WOFF2 there
-and back, and is refused without the module.
+The table comes back from decompiling and from XML as it was. A subset draws the same bitmaps, that of pyftsubset with the
+module, that of `nfr subset`, and after WOFF2 there and back; without the module it is refused.
 """
 
 import io
@@ -51,9 +51,16 @@ def main(neural, original, nfr):
         def name(file):
             return str(Path(directory) / file)
 
-        subset([neural, f"--text={TEXT}", f"--output-file={name('neural.ttf')}"])
-        plain.main([original, f"--text={TEXT}", "--hinting", f"--output-file={name('original.ttf')}"])
-        assert drawn(nfr, name("neural.ttf")) == drawn(nfr, neural), "a subset draws something else"
+        subset([neural, f"--text={TEXT}", f"--output-file={name('blank.ttf')}"])
+        subset([neural, f"--text={TEXT}", "--notdef-outline", f"--output-file={name('neural.ttf')}"])
+        same = ["--hinting", "--notdef-outline", f"--output-file={name('original.ttf')}"]
+        plain.main([original, f"--text={TEXT}", *same])
+        compact = [nfr, "subset", neural, name("compact.ttf"), "--text", TEXT, "--python", sys.executable]
+        subprocess.run(compact, check=True)
+        for file in "blank.ttf", "neural.ttf", "compact.ttf":
+            assert drawn(nfr, name(file)) == drawn(nfr, neural), f"{file} draws something else"
+        lengths = [len(TTFont(name(file)).reader["Nfrt"]) for file in ("compact.ttf", "neural.ttf")]
+        assert lengths[0] <= lengths[1], "what no glyph needs was not left out"
         assert len(TTFont(name("neural.ttf")).getGlyphOrder()) < len(TTFont(neural).getGlyphOrder())
         from fontTools.ttLib import woff2
 

@@ -5,6 +5,7 @@
 mod samples;
 
 use nfr::{Font, Rasterizer, Target};
+use nfr_convert::compact::compact;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::teacher::Teacher;
 use nfr_convert::{Conversion, Options, Quality, convert};
@@ -216,6 +217,22 @@ fn a_glyph_that_cannot_be_drawn_is_left_out_and_the_others_are_converted() {
     assert!(font.has_model(a.into()) && !font.has_model(o.into()));
     let alone = convert(&endless, &options(&endless, "o", Target::Smooth, 50.0), &Silent).unwrap_err();
     assert!(alone.to_string().contains(&format!("glyph {o}")), "{alone}");
+}
+
+#[test]
+fn a_font_is_compact_already_and_draws_the_same_when_it_is_written_again() {
+    let data = font("LiberationSans-Regular");
+    let whole = converted(&data, "abcdeéñop½", Target::Smooth, 50.0).font;
+    let again = compact(&whole).unwrap();
+    let (whole, again) = (Font::new(whole).unwrap(), Font::new(again).unwrap());
+    assert_eq!(whole.table_len(), again.table_len());
+    let [mut before, mut after] = [&whole, &again].map(Rasterizer::new);
+    for glyph in whole.modelled_glyphs() {
+        for ppem in [9.0, 16.0, 40.0, 64.0] {
+            assert_eq!(before.render(glyph, ppem), after.render(glyph, ppem), "{glyph} {ppem}");
+            assert_eq!(before.hinted_advance(glyph, ppem), after.hinted_advance(glyph, ppem));
+        }
+    }
 }
 
 #[test]

@@ -13,6 +13,7 @@ pub mod info;
 #[cfg(feature = "lab")]
 pub mod lab;
 pub mod render;
+pub mod subset;
 pub mod verify;
 
 mod args;

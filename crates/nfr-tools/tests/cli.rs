@@ -24,7 +24,7 @@ fn help_and_version_succeed() {
     for args in [["--help"], ["--version"]] {
         assert_eq!((nfr(&args).code, nfr_convert(&args).code), (0, 0));
     }
-    for command in ["render", "diff", "verify", "info"] {
+    for command in ["render", "diff", "verify", "info", "subset"] {
         assert!(nfr(&[command, "--help"]).succeeds().stdout.contains("Usage: nfr "));
     }
 }
@@ -239,4 +239,19 @@ fn a_failure_leaves_an_existing_output_as_it_was() {
     nfr_convert(&[&unhinted, &output, "--gids", "36", "--ppem", "12"]).fails_with(&["no hint programs"]);
     assert_eq!(std::fs::read(&output).unwrap(), b"precious");
     assert_eq!(directory.files(), ["in.ttf", "out.ttf"]);
+}
+
+#[test]
+fn a_subset_without_python_or_a_selection_says_what_is_needed() {
+    let directory = Directory::new();
+    let converted = directory.name("converted.ttf");
+    nfr_convert(&["--text", "a", "--ppem", "12", "--quiet", SANS, &converted]).succeeds();
+    let output = directory.write("out.ttf", b"precious");
+    let subset = |more: &[&str]| nfr(&[&["subset", &converted, &output], more].concat());
+    subset(&[]).rejects_usage(&["nothing is selected", "--unicodes"]);
+    nfr(&["subset", &converted, &converted, "--text", "a"]).rejects_usage(&["the output is the input"]);
+    subset(&["--text", "a", "--python", "/no/such/python"])
+        .fails_with(&["/no/such/python", "pip install fonttools"]);
+    nfr(&["subset", SANS, &output, "--text", "a"]).fails_with(&["no 'Nfrt' table"]);
+    assert_eq!(std::fs::read(&output).unwrap(), b"precious");
 }

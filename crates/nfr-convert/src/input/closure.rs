@@ -2,6 +2,7 @@
 //! pyftsubset's.
 
 use std::collections::BTreeSet;
+use std::fmt;
 use std::str::FromStr;
 
 use read_fonts::collections::IntSet;
@@ -38,6 +39,18 @@ impl LayoutFeatures {
         match self {
             Self::All => true,
             Self::Tags(tags) => tags.contains(&tag),
+        }
+    }
+}
+
+impl fmt::Display for LayoutFeatures {
+    /// Writes what pyftsubset takes: `*`, or tags separated by commas, which are none for no features.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => f.write_str("*"),
+            Self::Tags(tags) => {
+                f.write_str(&tags.iter().map(Tag::to_string).collect::<Vec<String>>().join(","))
+            }
         }
     }
 }

@@ -14,7 +14,7 @@ use nfr::internals::table::{
 
 use crate::error::Error;
 
-pub(crate) use outlines::{OutlineTable, write_outlines};
+pub(crate) use outlines::{Messages, OutlineTable, write_outlines};
 
 /// No packed model is longer than this: the table stores lengths in 16 bits.
 const MAX_MODEL_BYTES: usize = u16::MAX as usize;

@@ -42,18 +42,8 @@ pub(crate) fn write_outlines(
         let known = known(glyph.gid).map(|parts| plain_parts(&parts));
         glyphs.insert(glyph.gid, encode_parts(&stored, known.as_deref())?);
     }
-    let shared = &table.encoded.shared;
-    let messages: Vec<&[u8]> = glyphs
-        .values()
-        .chain(shared.iter().flatten().map(|(_, message)| message))
-        .chain(&lists.messages)
-        .map(Vec::as_slice)
-        .collect();
-    let too_large =
-        || Error::LimitExceeded("outline models that are too large to store; convert fewer sizes".into());
-    let (blocks, payload) = pack(&messages).ok_or_else(too_large)?;
     let mut out = if table.fields.is_empty() {
-        let mut out = Vec::with_capacity(HEADER_LEN + 6 + payload.len());
+        let mut out = Vec::with_capacity(HEADER_LEN);
         put_header(&mut out, header, 0, 0);
         out.resize(HEADER_LEN, 0);
         out
@@ -61,16 +51,46 @@ pub(crate) fn write_outlines(
         write(header, table.fields, &[], &[], table.scale)?.0
     };
     out[FLAGS_AT] |= OUTLINE_MODELS;
-    let ranges = ranges(glyphs.keys().copied());
-    for count in [ranges.len(), shared[0].len(), shared[1].len(), lists.messages.len()] {
-        out.extend(u16::try_from(count).map_err(|_| too_large())?.to_be_bytes());
-    }
-    out.extend((payload.len() as u32).to_be_bytes());
-    out.extend(ranges.into_iter().flatten().flat_map(u16::to_be_bytes));
-    out.extend(shared.iter().flatten().flat_map(|(level, _)| level.to_be_bytes()));
-    out.extend(blocks.into_iter().flat_map(u32::to_be_bytes));
-    out.extend(payload);
+    let messages = Messages { glyphs, shared: table.encoded.shared.clone(), lists: lists.messages };
+    messages.write(&mut out)?;
     Ok(out)
+}
+
+/// The messages of outline models.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Messages {
+    /// By glyph.
+    pub(crate) glyphs: BTreeMap<u16, Vec<u8>>,
+    /// Those of shared tracks along x and y, by ascending level, which stands beside each.
+    pub(crate) shared: [Vec<(i16, Vec<u8>)>; 2],
+    /// Lists of grid offsets.
+    pub(crate) lists: Vec<Vec<u8>>,
+}
+
+impl Messages {
+    /// Appends them to a table, with what finds them.
+    pub(crate) fn write(&self, out: &mut Vec<u8>) -> Result<(), Error> {
+        let Self { glyphs, shared, lists } = self;
+        let messages: Vec<&[u8]> = glyphs
+            .values()
+            .chain(shared.iter().flatten().map(|(_, message)| message))
+            .chain(lists)
+            .map(Vec::as_slice)
+            .collect();
+        let too_large =
+            || Error::LimitExceeded("outline models that are too large to store; convert fewer sizes".into());
+        let (blocks, payload) = pack(&messages).ok_or_else(too_large)?;
+        let ranges = ranges(glyphs.keys().copied());
+        for count in [ranges.len(), shared[0].len(), shared[1].len(), lists.len()] {
+            out.extend(u16::try_from(count).map_err(|_| too_large())?.to_be_bytes());
+        }
+        out.extend((payload.len() as u32).to_be_bytes());
+        out.extend(ranges.into_iter().flatten().flat_map(u16::to_be_bytes));
+        out.extend(shared.iter().flatten().flat_map(|(level, _)| level.to_be_bytes()));
+        out.extend(blocks.into_iter().flat_map(u32::to_be_bytes));
+        out.extend(payload);
+        Ok(())
+    }
 }
 
 /// Ranges of ascending glyphs: the first, the last, and how many are before it.

@@ -1,11 +1,11 @@
-//! Draws, compares, verifies, describes and times neural fonts.
+//! Draws, compares, verifies, describes, subsets and times neural fonts.
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use nfr_tools as cli;
 
-/// Draws, compares, verifies, describes and times neural fonts
+/// Draws, compares, verifies, describes, subsets and times neural fonts
 #[derive(Debug, Parser)]
 #[command(name = "nfr", version)]
 struct Args {
@@ -19,6 +19,7 @@ enum Command {
     Diff(cli::diff::Args),
     Verify(cli::verify::Args),
     Info(cli::info::Args),
+    Subset(cli::subset::Args),
     Bench(cli::bench::Args),
     Lab(cli::lab::Args),
 }
@@ -29,6 +30,7 @@ fn main() -> ExitCode {
         Command::Diff(args) => cli::diff::run(&args),
         Command::Verify(args) => cli::verify::run(&args),
         Command::Info(args) => cli::info::run(&args),
+        Command::Subset(args) => cli::subset::run(&args),
         Command::Bench(args) => cli::bench::run(&args),
         Command::Lab(args) => cli::lab::run(&args),
     })
