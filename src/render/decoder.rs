@@ -5,6 +5,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use read_fonts::TableProvider;
+
 use super::font::Font;
 use super::glyph::{Drawn, Glyph, Outlines, SharedModel};
 use super::stored_outline::Memory;
@@ -16,7 +18,6 @@ use crate::model::gridfit::GridFit;
 use crate::network::Network;
 use crate::table::outline::Advances;
 use crate::table::outline_hash;
-use read_fonts::TableProvider;
 
 /// Decodes a font's glyphs, and keeps what composed glyphs share.
 #[derive(Debug)]
@@ -58,8 +59,8 @@ impl Decoder {
         self.glyph_with(glyph, 0..self.font.scale().sizes(), |_| None)
     }
 
-    /// Decodes a glyph, at some sizes at least, the first of which begins a section. `known` gives the models that are decoded already, for the parts
-    /// of composed glyphs.
+    /// Decodes a glyph, at some sizes at least, the first of which begins a section. `known` gives the models that are decoded
+    /// already, for the parts of composed glyphs.
     pub(super) fn glyph_with(
         &mut self,
         glyph: u32,

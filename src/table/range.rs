@@ -240,8 +240,9 @@ impl Coder for Decoder<'_> {
     }
 
     fn enter_section(&mut self, lengths: &[usize], section: usize) -> Result<(), End> {
-        // Lengths are numbers of 32 bits, of which there are few.
-        let end = |lengths: &[usize]| self.message.len().checked_sub(lengths.iter().sum());
+        // Damaged lengths may add up to more than there are numbers.
+        let sum = |lengths: &[usize]| lengths.iter().fold(0usize, |sum, length| sum.saturating_add(*length));
+        let end = |lengths: &[usize]| self.message.len().checked_sub(sum(lengths));
         let begin = match section.checked_sub(1) {
             None => Some(0),
             Some(before) => end(lengths.get(before..).unwrap_or_default()),
