@@ -84,6 +84,15 @@ impl SelectionArgs {
         Ok(gids)
     }
 
+    /// The glyphs of what the selected characters compose to.
+    ///
+    /// # Errors
+    ///
+    /// A text file, or a font, that cannot be read.
+    pub fn compositions(&self, font: &FontRef<'_>) -> Result<Vec<u16>, Failure> {
+        Ok(self.selection()?.compositions(font)?)
+    }
+
     /// Whether nothing is selected, which stands for everything.
     pub fn is_empty(&self) -> bool {
         self.text.is_none()

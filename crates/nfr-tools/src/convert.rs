@@ -274,7 +274,8 @@ fn prepare(
     let gids = if args.selection.is_empty() || args.no_closure {
         gids
     } else {
-        close(&font, &gids, &args.layout_features)?
+        let composed = args.selection.compositions(&font)?;
+        close(&font, &[gids, composed].concat(), &args.layout_features)?
     };
     let added = gids.len() - named;
     let verbosity = match (args.quiet, args.verbose) {

@@ -332,3 +332,15 @@ fn a_font_that_misses_a_threshold_is_not_written() {
     assert_eq!(directory.files(), ["out.ttf"]);
     nfr_convert(&[&args[..], &["beauty<1"]].concat()).rejects_usage(&["beauty"]);
 }
+
+#[test]
+fn what_shapers_put_in_the_place_of_characters_is_converted() {
+    let directory = Directory::new();
+    let output = directory.name("out.ttf");
+    let has = |font: &Font, character: char| font.has_model(font.glyph_for_char(character).unwrap());
+    // An accent after its letter becomes one glyph where the font has it. A thin space is missing: the space stands for it.
+    let run = nfr_convert(&["--text", "e\u{301}\u{2009}", "--ppem", "12", SANS, &output]).succeeds();
+    assert_eq!(run.stderr, "");
+    let font = Font::new(std::fs::read(&output).unwrap()).unwrap();
+    assert!(has(&font, 'é') && has(&font, ' ') && has(&font, '\u{301}'));
+}

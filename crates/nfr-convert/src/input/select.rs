@@ -1,6 +1,7 @@
 //! Which glyphs: by text, by code point, by number, by name. The options are pyftsubset's.
 
 mod lists;
+mod shaping;
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -11,6 +12,7 @@ use super::open::owned;
 use crate::error::Error;
 
 pub use lists::{CodePoints, GlyphIds, GlyphNames};
+use shaping::{compositions, parts};
 
 /// The most unknown glyph names that one message lists.
 const NAMES_LISTED: usize = 5;
@@ -48,8 +50,9 @@ impl Selection {
         self.text.iter().flat_map(|text| text.chars()).filter(|c| !matches!(c, '\n' | '\r' | '\u{feff}'))
     }
 
-    /// The glyph numbers in `font`. An empty selection stands for `all`. Characters that the font does not have are listed, as long
-    /// as something else is selected.
+    /// The glyph numbers in `font`. An empty selection stands for `all`. In place of a character that the font does not have, what
+    /// shapers put there is selected, as the letter and the accent for an accented letter. Where that is missing, too, the character
+    /// is listed, as long as something else is selected.
     ///
     /// # Errors
     ///
@@ -91,15 +94,41 @@ impl Selection {
         let font = owned(font)?;
         let charmap = font.charmap();
         let lookup = |code: u32| charmap.map_unicode(code).and_then(|gid| u16::try_from(gid.to_u32()).ok());
-        let codes = self.characters().map(u32::from).chain(self.unicodes.0.iter().flat_map(Clone::clone));
         let mut missing = BTreeSet::new();
-        for code in codes {
-            match lookup(code) {
-                Some(gid) => gids.insert(gid),
-                None => missing.insert(code),
-            };
+        for code in self.codes() {
+            let found = lookup(code).map(|gid| vec![gid]);
+            let parts =
+                || Some(parts(code, |part| lookup(part).is_some())?.into_iter().filter_map(lookup).collect());
+            match found.or_else(parts) {
+                Some(found) => gids.extend(found),
+                None => missing.extend([code]),
+            }
         }
         Ok(missing)
+    }
+
+    /// The code points of the text and of the list.
+    fn codes(&self) -> impl Iterator<Item = u32> + '_ {
+        self.characters().map(u32::from).chain(self.unicodes.0.iter().flat_map(Clone::clone))
+    }
+
+    /// The glyphs of what the selected characters compose to, which shapers put in their place: é for e and an accent.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if the font's table directory cannot be read.
+    pub fn compositions(&self, font: &FontRef<'_>) -> Result<Vec<u16>, Error> {
+        let font = owned(font)?;
+        let charmap = font.charmap();
+        let lookup = |code: u32| charmap.map_unicode(code).and_then(|gid| u16::try_from(gid.to_u32()).ok());
+        let with_parts = |code: u32| match lookup(code) {
+            Some(_) => vec![code],
+            None => parts(code, |part| lookup(part).is_some()).unwrap_or_default(),
+        };
+        Ok(compositions(&self.codes().flat_map(with_parts).collect())
+            .into_iter()
+            .filter_map(lookup)
+            .collect())
     }
 
     fn add_names(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<(), Error> {
