@@ -330,7 +330,10 @@ proptest! {
             data[range.start + at.index(length)] = value;
         }
         if let Err(error) = use_font(data) {
-            let expected = matches!(error, Error::MalformedModels { .. } | Error::UnknownVersion { .. });
+            let expected = matches!(
+                error,
+                Error::MalformedModels { .. } | Error::UnknownVersion { .. } | Error::Renumbered { .. }
+            );
             prop_assert!(expected, "{error:?}");
         }
     }

@@ -29,7 +29,7 @@ fn neural() -> &'static str {
     let converted = CONVERTED.get_or_init(|| {
         let directory = Directory::new();
         let font = directory.name("neural.ttf");
-        nfr_convert(&["--quiet", "--text", "agé", "--ppem", "12", SANS, &font]).succeeds();
+        nfr_convert(&["--quiet", "--no-closure", "--text", "agé", "--ppem", "12", SANS, &font]).succeeds();
         (directory, font)
     });
     &converted.1
@@ -70,7 +70,7 @@ fn a_single_glyph_can_be_timed() {
 fn a_font_with_a_single_model_can_be_timed() {
     let directory = Directory::new();
     let font = directory.name("neural.ttf");
-    nfr_convert(&["--quiet", "--text", "i", "--ppem", "12", SANS, &font]).succeeds();
+    nfr_convert(&["--quiet", "--no-closure", "--text", "i", "--ppem", "12", SANS, &font]).succeeds();
     assert_lines(nfr(&["bench", SANS, &font, "--rounds", "1", "--ppem", "12", "--json"]), &[12]);
 }
 
