@@ -178,7 +178,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let comparison = pair.report(names, &gids, &args.ppem, args.jobs)?;
     let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&comparison));
     if !failures.is_empty() {
-        partial.map(Partial::remove).transpose()?;
+        // Trained glyphs are kept: with another threshold --resume needs no training.
         return Err(Failure::failed(format!("{}; no font is written", failures.join("; "))));
     }
     if options.fidelity.is_exact() && !args.quiet {
