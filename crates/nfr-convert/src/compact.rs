@@ -15,12 +15,20 @@ use write_fonts::FontBuilder;
 
 use crate::error::Error;
 use crate::input::open::{open, owned};
+use crate::outline::stored_outline;
 use crate::writer::Messages;
 
 /// A glyph's model, decoded.
 enum Decoded {
-    Own(Box<(OutlinePoints, OutlineWeights, Sources)>),
+    Own(Box<Own>),
     Composed(StoredGlyph),
+}
+
+struct Own {
+    points: OutlinePoints,
+    advance: u16,
+    weights: OutlineWeights,
+    sources: Sources,
 }
 
 /// Writes a font again without the shared tracks and lists of grid offsets that none of its models refers to. A font that has
@@ -77,22 +85,15 @@ fn decode_all(
             let known = parts_of(file, *gid);
             Decoded::Composed(decode_parts(message, known.as_deref(), scale.sizes()).map_err(of_glyph)?)
         } else {
-            let mut points = OutlinePoints::default();
-            let unreadable = || Error::from(nfr::Error::MalformedOutline(glyph));
-            let outline = outlines.outline_glyphs().get((*gid).into()).ok_or_else(unreadable)?;
-            outline.draw_unscaled(skrifa::DrawMemory::Scratch, &mut points).map_err(|_| unreadable())?;
-            let known = Known { points: &points, advance: advance(&outlines, *gid), scale, shared };
+            let (points, advance) = stored_outline(&outlines, *gid)?;
+            let known = Known { points: &points, advance, scale, shared };
             let (weights, sources) =
                 decode(message, &known, 0..scale.sizes(), &mut Vec::new()).map_err(of_glyph)?;
-            Decoded::Own(Box::new((points, weights, sources)))
+            Decoded::Own(Box::new(Own { points, advance, weights, sources }))
         };
         decoded.insert(*gid, model);
     }
     Ok(decoded)
-}
-
-fn advance(font: &skrifa::font::Font, gid: u16) -> u16 {
-    font.glyph_metrics().h_advance(gid.into()).clamp(0.0, f32::from(u16::MAX)) as u16
 }
 
 fn parts_of(file: &FontRef<'_>, gid: u16) -> Option<Vec<nfr::internals::table::outline::StoredPart>> {
@@ -112,7 +113,7 @@ impl Numbers {
         for model in decoded.values() {
             match model {
                 Decoded::Own(own) => {
-                    for (tracks, sources) in numbers.tracks.iter_mut().zip(&own.2) {
+                    for (tracks, sources) in numbers.tracks.iter_mut().zip(&own.sources) {
                         for source in sources {
                             if let Source::Same(number) | Source::Near(number) = source {
                                 tracks.insert(*number, 0);
@@ -140,7 +141,7 @@ fn encode_all(
     decoded: BTreeMap<u16, Decoded>,
     numbers: &Numbers,
 ) -> Result<Messages, Error> {
-    let (scale, outlines) = (nfr::internals::scale(font), owned(file)?);
+    let scale = nfr::internals::scale(font);
     let outside = || Error::from(Damage::Malformed("refers to something outside the table"));
     let mut messages = Messages::default();
     for axis in [0, 1] {
@@ -163,7 +164,7 @@ fn encode_all(
     for (gid, model) in decoded {
         let message = match model {
             Decoded::Own(own) => {
-                let (points, mut weights, mut sources) = *own;
+                let Own { points, advance, mut weights, mut sources } = *own;
                 for (tracks, sources) in numbers.tracks.iter().zip(&mut sources) {
                     for source in sources {
                         if let Source::Same(number) | Source::Near(number) = source {
@@ -171,7 +172,7 @@ fn encode_all(
                         }
                     }
                 }
-                let known = Known { points: &points, advance: advance(&outlines, gid), scale, shared };
+                let known = Known { points: &points, advance, scale, shared };
                 encode(&known, &mut weights, &sources, &mut |question| question.wanted.into())?
             }
             Decoded::Composed(mut glyph) => {

@@ -7,7 +7,9 @@ mod encode;
 mod fit;
 mod samples;
 mod sharing;
+mod stored;
 
 pub(crate) use encode::{EncodedOutlines, encode};
 pub(crate) use fit::{FittedOutline, fit};
 pub(crate) use samples::OutlineSamples;
+pub(crate) use stored::stored_outline;

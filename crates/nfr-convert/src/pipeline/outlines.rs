@@ -14,13 +14,13 @@ use crate::compose::Decomposition;
 use crate::error::Error;
 use crate::input::open::owned;
 use crate::options::{Options, Shape};
-use crate::outline::{EncodedOutlines, FittedOutline, OutlineSamples, encode, fit};
+use crate::outline::{EncodedOutlines, FittedOutline, OutlineSamples, encode, fit, stored_outline};
 use crate::parallel;
 use crate::partial::Partial;
 use crate::writer::{GlyphModel, OutlineTable, write_outlines};
 use nfr::internals::model::compose::{Composed, Part, round_to_grid};
 use nfr::internals::model::gridfit::Scale;
-use nfr::internals::model::outline::{OutlineModel, OutlinePoints};
+use nfr::internals::model::outline::OutlineModel;
 use nfr::internals::table::Header;
 use nfr::internals::table::outline::{Advances, scale_at};
 use nfr::internals::{Glyph, components, mul_fixed};
@@ -175,14 +175,7 @@ fn outline_samples(
     font: &Font,
     gid: u16,
 ) -> Result<Option<(OutlineSamples, u16)>, Error> {
-    let unreadable = || Error::from(nfr::Error::MalformedOutline(gid.into()));
-    let mut points = OutlinePoints::default();
-    let outline = font.outline_glyphs().get(gid.into()).ok_or_else(unreadable)?;
-    outline.draw_unscaled(skrifa::DrawMemory::Scratch, &mut points).map_err(|_| unreadable())?;
-    if points.is_unfit {
-        return Err(unreadable());
-    }
-    let advance = font.glyph_metrics().h_advance(gid.into()).clamp(0.0, f32::from(u16::MAX)) as u16;
+    let (points, advance) = stored_outline(font, gid)?;
     let samples = OutlineSamples::new(&stages.samples(gid)?, points, advance, stages.scale.units_per_em());
     Ok(samples.map(|samples| (samples, advance)))
 }
