@@ -70,7 +70,7 @@ pub enum Error {
         /// The glyphs that this font has.
         font: u32,
     },
-    /// A glyph's outline is not the one that its model was made for.
+    /// A glyph's outline or advance width is not the one that its model was made for.
     StaleModel(u32),
     /// The font has no glyph with this number.
     NoSuchGlyph(u32),
@@ -177,7 +177,10 @@ impl fmt::Display for Error {
                  the conversion"
             ),
             Self::StaleModel(glyph) => {
-                write!(f, "the outline of glyph {glyph} was changed after its model was made")
+                write!(
+                    f,
+                    "the outline or the advance width of glyph {glyph} was changed after its model was made"
+                )
             }
             Self::NoSuchGlyph(glyph) => write!(f, "the font has no glyph {glyph}"),
             Self::MissingModel(glyph) => write!(f, "glyph {glyph} has no model in this font"),

@@ -1,6 +1,6 @@
 """The table `Nfrt`, version 2 (spec/nfrt.md), by glyph names: it follows its font through subsetting and other orders of glyphs.
 
-Models are kept as they are, as bytes. Only the messages of composed glyphs are decoded, because they refer to other glyphs.
+Models are kept as they are, as bytes. Only the messages of composed glyphs are decoded (`composed`), because they refer to other glyphs.
 """
 
 import logging
@@ -10,16 +10,14 @@ from fontTools.misc.textTools import bytesjoin, safeEval
 from fontTools.ttLib import TTLibError
 from fontTools.ttLib.tables import DefaultTable
 
-from .coder import Damaged, Decoder, Encoder, Model
+from .coder import Damaged
+from .composed import Blank, ComposedOutline
 
 log = logging.getLogger(__name__)
 
 HEADER = 52
 BLOCK = 64
-NETWORKS, OUTLINE_MODELS = 2, 4
-MAX_PARTS = MAX_DEPTH = 16
-# The kinds of messages, and the context of "unusual" for parts that are not those of glyf (7.6).
-COMPOSED, LISTED = 1, 2
+NETWORKS, OUTLINE_MODELS, CERTIFICATE, DROPOUT = 2, 4, 8, 16
 
 
 class Reader:
@@ -46,110 +44,8 @@ def packed(code, numbers):
     return struct.pack(f">{len(numbers)}{code}", *numbers)
 
 
-def plain_parts(glyf, name, offset=(0, 0), depth=0):
-    """The simple glyphs that a composite glyph consists of, with their offsets; None if they have to be listed."""
-    glyph = glyf[name]
-    if not glyph.isComposite():
-        return [(name, offset)] if glyph.numberOfContours > 0 else []
-    if depth > MAX_DEPTH:
-        return None
-    parts = []
-    for component in glyph.components:
-        if hasattr(component, "firstPt") or hasattr(component, "transform"):
-            return None
-        at = (offset[0] + component.x, offset[1] + component.y)
-        found = plain_parts(glyf, component.glyphName, at, depth + 1)
-        if found is None or any(not -32768 <= v <= 32767 for v in at):
-            return None
-        parts += found
-    return parts if len(parts) <= MAX_PARTS else None
-
-
-def parts_hash(parts, glyph_id):
-    value = 0x811C9DC5
-    for name, (x, y) in parts:
-        for number in (glyph_id(name), x & 0xFFFF, y & 0xFFFF):
-            value = (value ^ number) * 0x01000193 & 0xFFFFFFFF
-    return (value ^ value >> 16) & 0xFFFF
-
-
-def sign(value):
-    return (value >= 0) + (value >= 1)
-
-
-def blank():
-    """The outline model of a glyph without an outline, which hinting does not touch."""
-    model = Model(coder := Encoder())
-    model.bits("message", 0, 2, 0)
-    # The hash of nothing.
-    model.raw(0x811C9DC5 >> 16 ^ 0x9DC5)
-    for context in (1, 0, 2, 3, 4):
-        model.flag("unusual", context, 0)
-    return coder.finish()
-
-
-class ComposedOutline:
-    """A glyph that is composed of outline models: parts, the lists of grid offsets of each (along x and y), advance widths."""
-
-    def __init__(self, is_listed, parts, lists, advances):
-        self.is_listed, self.parts, self.lists, self.advances = is_listed, parts, lists, advances
-
-    @classmethod
-    def decode(cls, message, name, font, sizes):
-        coder = Decoder(message)
-        model = Model(coder)
-        if model.bits("message", 0, 2) != COMPOSED:
-            return None
-        if is_listed := bool(model.flag("unusual", LISTED)):
-            count, parts = model.signed("part", 0), []
-            if not 0 <= count <= MAX_PARTS:
-                raise Damaged(f"glyph {name} has {count} parts")
-            for _ in range(count):
-                gid = model.raw()
-                parts.append((font.getGlyphName(gid), (model.signed("part", 1), model.signed("part", 2))))
-        else:
-            parts = plain_parts(font["glyf"], name) if font["glyf"][name].isComposite() else None
-            if parts is None or model.raw() != parts_hash(parts, font.getGlyphID):
-                raise Damaged(f"the parts of glyph {name} are not those that its model was made of")
-        lists = [[model.positive("part list", axis) for axis in (0, 1)] for _ in parts]
-        advances = model.bits("advances", 0, 2)
-        if advances >= 2:
-            numbers = []
-            for _ in range(sizes):
-                v, u = (numbers[-1:] or [0])[0], (numbers[-2:-1] or [0])[0]
-                step = model.signed("advance", 9 + 3 * sign(v) + sign(u))
-                numbers.append((v + step + 128) % 256 - 128)
-            advances = numbers
-        coder.finish()
-        return cls(is_listed, parts, lists, advances)
-
-    def encode(self, name, font):
-        coder = Encoder()
-        model = Model(coder)
-        model.bits("message", 0, 2, COMPOSED)
-        model.flag("unusual", LISTED, int(self.is_listed))
-        if self.is_listed:
-            model.signed("part", 0, len(self.parts))
-            for part, (x, y) in self.parts:
-                model.raw(font.getGlyphID(part))
-                model.signed("part", 1, x)
-                model.signed("part", 2, y)
-        else:
-            model.raw(parts_hash(self.parts, font.getGlyphID))
-        for lists in self.lists:
-            for axis, number in enumerate(lists):
-                model.positive("part list", axis, number)
-        numbers = self.advances if isinstance(self.advances, list) else None
-        model.bits("advances", 0, 2, self.advances if numbers is None else 2)
-        v = u = 0
-        for number in numbers or []:
-            model.signed("advance", 9 + 3 * sign(v) + sign(u), number - v)
-            v, u = number, v
-        return coder.finish()
-
-
 class table_N__f_r_t(DefaultTable.DefaultTable):
-    dependencies = ["head", "maxp", "glyf"]
+    dependencies = ["head", "hmtx", "maxp", "glyf"]
 
     def decompile(self, data, ttFont):
         reader, name = Reader(data), ttFont.getGlyphName
@@ -170,9 +66,27 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
             payload = reader.bytes(ends[-1])
             self.networks = {name(gid): payload[a:b] for gid, a, b in zip(ids, ends, ends[1:])}
         self.outlines, self.shared, self.lists = {}, ([], []), []
+        names = [*self.fields, *self.composed_fields, *self.networks]
         if flags & OUTLINE_MODELS:
-            self._read_outlines(reader, ttFont)
+            names += self._read_outlines(reader, ttFont)
+        self.certificate, self.errors, self.dropout, self.dropout_exceptions = b"", {}, b"", []
+        if flags & CERTIFICATE:
+            self.certificate = reader.bytes(1)
+            for _ in ("teacher", "converter", "options"):
+                length = reader.one("B")
+                self.certificate += bytes([length]) + reader.bytes(length)
+            self.errors = {name: reader.bytes(3) for name in sorted(names, key=ttFont.getGlyphID)}
+        if flags & DROPOUT:
+            count = reader.one("H")
+            self.dropout = packed("H", [count]) + reader.bytes(3 * count)
+            for _ in range(reader.one("H")):
+                self.dropout_exceptions.append((name(reader.one("H")), reader.bytes(5)))
         self.rest = data[reader.at :]
+
+    def _names(self, font):
+        """The glyphs that the table has, in the font's order."""
+        kinds = self.fields, self.composed_fields, self.networks, self.outlines
+        return sorted({name for models in kinds for name in models}, key=font.getGlyphID)
 
     def _read_fields(self, reader, name, count, payload_length):
         gids, lengths = reader.array("H", count), reader.array("H", count)
@@ -191,6 +105,7 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
         self.grid_offsets = reader.bytes(offsets_length)
 
     def _read_outlines(self, reader, font):
+        """Reads the outline models. Returns the names of all glyphs that have one, those that are left out among them."""
         range_count, x, y, lists = reader.array("H", 4)
         payload_length = reader.one("I")
         ranges = reader.array("H", 3 * range_count)
@@ -215,6 +130,7 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
         rest = messages[len(gids) :]
         self.shared = list(zip(levels[0], rest[:x])), list(zip(levels[1], rest[x : x + y]))
         self.lists = rest[x + y :]
+        return names
 
     def compile(self, ttFont):
         gid = ttFont.getGlyphID
@@ -223,9 +139,11 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
         parts = [part for name in composed for part in self.composed_fields[name]]
         lengths = [len(self.fields[name]) for name in fields]
         payload = bytesjoin(self.fields[name] for name in fields)
-        flags = self.header[5] & ~(NETWORKS | OUTLINE_MODELS)
+        flags = self.header[5] & ~(NETWORKS | OUTLINE_MODELS | CERTIFICATE | DROPOUT)
         flags |= NETWORKS if self.networks else 0
         flags |= OUTLINE_MODELS if self.outlines else 0
+        flags |= CERTIFICATE if self.certificate else 0
+        flags |= DROPOUT if self.dropout else 0
         header = bytearray(self.header)
         struct.pack_into(">HHBB", header, 0, 2, 1 if self.networks else 0, self.header[4], flags)
         struct.pack_into(">H", header, 10, len(fields))
@@ -249,6 +167,12 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
             out += [self.networks[name] for name in names]
         if self.outlines:
             out += self._packed_outlines(ttFont)
+        if self.certificate:
+            out.append(self.certificate)
+            out += [self.errors[name] for name in self._names(ttFont)]
+        if self.dropout:
+            out += [self.dropout, packed("H", [len(self.dropout_exceptions)])]
+            out += [packed("H", [gid(name)]) + mode for name, mode in self.dropout_exceptions]
         return bytesjoin(out) + self.rest
 
     def _packed_outlines(self, font):
@@ -298,7 +222,8 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
             for models in self.fields, self.networks, self.composed_fields:
                 models.pop(".notdef", None)
             if self.outlines:
-                self.outlines[".notdef"] = blank()
+                self.outlines[".notdef"], self.errors[".notdef"] = Blank(), bytes(3)
+        self.dropout_exceptions = [entry for entry in self.dropout_exceptions if entry[0] in s.glyphs]
         return bool(self.fields or self.networks or self.outlines)
 
     def toXML(self, writer, ttFont):
@@ -327,12 +252,23 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
             if isinstance(model, ComposedOutline):
                 self._composed_to_xml(writer, name, model)
             else:
-                dump("outline", model, glyph=name)
+                data = model if isinstance(model, bytes) else model.encode(name, ttFont)
+                dump("outline", data, glyph=name)
         for axis, tracks in zip("xy", self.shared):
             for level, data in tracks:
                 dump("sharedTrack", data, axis=axis, level=level)
         for data in self.lists:
             dump("list", data)
+        if self.certificate:
+            dump("certificate", self.certificate)
+        for name in self._names(ttFont) if self.certificate else ():
+            writer.simpletag("errors", glyph=name, codes=self.errors[name].hex())
+            writer.newline()
+        if self.dropout:
+            dump("dropout", self.dropout)
+        for name, mode in self.dropout_exceptions:
+            writer.simpletag("dropoutException", glyph=name, mode=mode.hex())
+            writer.newline()
         dump("rest", self.rest)
 
     def _composed_to_xml(self, writer, name, model):
@@ -342,7 +278,7 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
             "composedOutline",
             [
                 ("glyph", name),
-                ("listed", int(model.is_listed)),
+                *([] if model.outline is None else [("outline", model.outline)]),
                 (kind, " ".join(map(str, numbers))),
             ],
         )
@@ -357,6 +293,7 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
         if not hasattr(self, "fields"):
             self.fields, self.composed_fields, self.networks, self.outlines = {}, {}, {}, {}
             self.shared, self.lists = ([], []), []
+            self.certificate, self.errors, self.dropout, self.dropout_exceptions = b"", {}, b"", []
         data = bytes.fromhex("".join("".join(c for c in content if isinstance(c, str)).split()))
         parts = [child[1] for child in content if isinstance(child, tuple)]
         numbers = [[safeEval(part[key]) for key in ("x", "y", "listX", "listY")] for part in parts]
@@ -378,11 +315,19 @@ class table_N__f_r_t(DefaultTable.DefaultTable):
         elif name == "composedOutline":
             advances = [int(v) for v in attrs["own"].split()] if "own" in attrs else int(attrs["kind"])
             placed = [(part["glyph"], (n[0], n[1])) for part, n in zip(parts, numbers)]
-            is_listed = bool(int(attrs["listed"]))
-            self.outlines[glyph] = ComposedOutline(is_listed, placed, [n[2:] for n in numbers], advances)
+            outline = int(attrs["outline"]) if "outline" in attrs else None
+            self.outlines[glyph] = ComposedOutline(outline, placed, [n[2:] for n in numbers], advances)
         elif name == "sharedTrack":
             self.shared["xy".index(attrs["axis"])].append((int(attrs["level"]), data))
         elif name == "list":
             self.lists.append(data)
+        elif name == "certificate":
+            self.certificate = data
+        elif name == "errors":
+            self.errors[glyph] = bytes.fromhex(attrs["codes"])
+        elif name == "dropout":
+            self.dropout = data
+        elif name == "dropoutException":
+            self.dropout_exceptions.append((glyph, bytes.fromhex(attrs["mode"])))
         elif name == "rest":
             self.rest = data

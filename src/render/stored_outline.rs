@@ -19,8 +19,8 @@ use crate::model::outline::{OutlineModel, OutlinePoints};
 use crate::table::MAX_PARTS;
 use crate::table::context_model::ContextModel;
 use crate::table::outline::{
-    Advances, Known, OutlineIndex, Shared, code, code_advances, code_list, code_parts, code_shared, decode,
-    decode_list, decode_parts, decode_shared, plain_parts,
+    Advances, Known, KnownGlyph, OutlineIndex, Shared, code, code_advances, code_list, code_parts,
+    code_shared, decode, decode_list, decode_parts, decode_shared, plain_parts,
 };
 use crate::table::range::Coder;
 
@@ -69,10 +69,10 @@ impl Font {
     pub(super) fn outline_parts(&self, glyph: u32) -> Result<(Vec<Part>, Advances), Error> {
         let table = self.table()?;
         let outlines = table.outlines();
-        let known = self.components(glyph).map(|parts| plain_parts(&parts));
         let sizes = self.scale().sizes();
-        let stored = decode_parts(outlines.glyph(glyph)?, known.as_deref(), sizes)
-            .map_err(|damage| damage.of(glyph))?;
+        let stored = self.with_known(glyph, |known| {
+            decode_parts(outlines.glyph(glyph)?, known, sizes).map_err(|damage| damage.of(glyph))
+        })?;
         let list = |number: u16| {
             let Some(number) = usize::from(number).checked_sub(1) else { return Ok(Vec::new()) };
             let bytes = outlines.list(number).ok_or(Damage::Malformed("has a part without offsets"))?;
@@ -99,6 +99,18 @@ impl Font {
         let message = level.zip(outlines.shared(axis, number));
         let (level, bytes) = message.ok_or(Damage::Malformed("has a track outside the table"))?;
         decode_shared(bytes, level, self.scale(), sizes, memory)
+    }
+
+    /// Calls `f` with what is known of a composed glyph.
+    fn with_known<T>(&self, glyph: u32, f: impl FnOnce(&KnownGlyph<'_>) -> T) -> T {
+        let parts = self.components(glyph).map(|parts| plain_parts(&parts));
+        let advance = self.advance_units(glyph);
+        let outline_hash = || {
+            let mut points = OutlinePoints::default();
+            read_outline(self, glyph, &mut points).ok()?;
+            Some(points.hash(advance))
+        };
+        f(&KnownGlyph { parts: parts.as_deref(), advance, outline_hash: &outline_hash })
     }
 
     /// What a composite glyph of `glyf` consists of.
@@ -131,9 +143,9 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
         model.forget();
         let message = outlines.glyph(glyph)?;
         let recoded = if table.is_composed(glyph) {
-            let known = font.components(glyph).map(|parts| plain_parts(&parts));
-            decode_parts(message, known.as_deref(), sizes).and_then(|mut stored| {
-                code_parts(model, &mut stored.parts, known.as_deref())?;
+            font.with_known(glyph, |known| {
+                let mut stored = decode_parts(message, known, sizes)?;
+                code_parts(model, &mut stored.parts, known)?;
                 code_advances(model, &mut stored.advances, sizes);
                 Ok(())
             })

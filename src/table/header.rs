@@ -24,6 +24,10 @@ pub const OUTLINES_DROPPED: u8 = 1;
 pub const NETWORKS: u8 = 2;
 /// The flag that says that outline models follow the networks.
 pub const OUTLINE_MODELS: u8 = 4;
+/// The flag that says that a certificate follows the outline models.
+pub const CERTIFICATE: u8 = 8;
+/// The flag that says that the modes of drop-out control follow the certificate.
+pub const DROPOUT: u8 = 16;
 /// The most parts of a composed glyph.
 pub const MAX_PARTS: usize = 16;
 /// The most bytes that the grid offsets of parts take, decoded.

@@ -5,11 +5,13 @@ use alloc::vec::Vec;
 use read_fonts::FontData;
 use read_fonts::types::BigEndian;
 
+use super::certificate::Certificate;
 use super::composed::ComposedGlyphs;
+use super::dropout::DropoutModes;
 use super::gids::{Gids, find, outside};
 use super::header::{
-    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, NETWORKS, OUTLINE_MODELS,
-    OUTLINES_DROPPED,
+    BLOCK, CERTIFICATE, DROPOUT, HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, NETWORKS,
+    OUTLINE_MODELS, OUTLINES_DROPPED,
 };
 use super::network_index::NetworkIndex;
 use super::outline::{self, OutlineIndex};
@@ -35,6 +37,8 @@ pub struct Table<'a> {
     composed: ComposedGlyphs<'a>,
     networks: NetworkIndex<'a>,
     outlines: OutlineIndex<'a>,
+    certificate: Option<Certificate<'a>>,
+    dropout: Option<DropoutModes<'a>>,
     payload: &'a [u8],
 }
 
@@ -97,11 +101,11 @@ impl<'a> Table<'a> {
             0 => (NetworkIndex::default(), networks_at),
             _ => NetworkIndex::parse(data, networks_at)?,
         };
-        let outlines = match flags & OUTLINE_MODELS {
-            0 => OutlineIndex::default(),
+        let (outlines, certificate_at) = match flags & OUTLINE_MODELS {
+            0 => (OutlineIndex::default(), outlines_at),
             _ => OutlineIndex::parse(data, outlines_at)?,
         };
-        let table = Self {
+        let mut table = Self {
             header,
             len: bytes.len(),
             gids: data.read_array(gids_at..lengths_at).map_err(|_| truncated(gids_at))?,
@@ -111,7 +115,17 @@ impl<'a> Table<'a> {
             composed,
             networks,
             outlines,
+            certificate: None,
+            dropout: None,
         };
+        let mut dropout_at = certificate_at;
+        if flags & CERTIFICATE != 0 {
+            let (certificate, end) = Certificate::parse(data, certificate_at, table.gids().len())?;
+            (table.certificate, dropout_at) = (Some(certificate), end);
+        }
+        if flags & DROPOUT != 0 {
+            table.dropout = Some(DropoutModes::parse(data, dropout_at)?);
+        }
         Ok(table)
     }
 
@@ -139,6 +153,16 @@ impl<'a> Table<'a> {
     /// The outline models.
     pub fn outlines(&self) -> &OutlineIndex<'a> {
         &self.outlines
+    }
+
+    /// What the conversion said of its result, if it did.
+    pub fn certificate(&self) -> Option<&Certificate<'a>> {
+        self.certificate.as_ref()
+    }
+
+    /// What the hints ask of a renderer in black and white, if the table says it.
+    pub fn dropout(&self) -> Option<&DropoutModes<'a>> {
+        self.dropout.as_ref()
     }
 
     /// The glyphs that have a field of their own, ascending.
@@ -282,7 +306,12 @@ impl<'a> Table<'a> {
         network::precision(self.packed_network(gid)?).map_err(|damage| damage.of(gid))
     }
 
-    fn packed_network(&self, gid: u32) -> Result<&'a [u8], Error> {
+    /// The bytes of a glyph's network.
+    ///
+    /// # Errors
+    ///
+    /// `MissingModel` if the glyph has none, `MalformedModel` for one that lies outside the table.
+    pub fn packed_network(&self, gid: u32) -> Result<&'a [u8], Error> {
         self.networks.packed(self.networks.find(gid).ok_or(Error::MissingModel(gid))?)
     }
 }

@@ -9,7 +9,7 @@
 #![forbid(unsafe_code)]
 
 pub mod assemble;
-pub mod compact;
+pub mod combine;
 pub mod compare;
 mod compose;
 mod conversion;

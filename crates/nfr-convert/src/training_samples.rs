@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::teacher::{Outline, Teacher, TeacherAt};
 use nfr::Bitmap;
+use nfr::internals::table::Dropout;
 
 /// The training samples of one glyph.
 #[derive(Debug, Clone)]
@@ -29,6 +30,8 @@ pub struct TrainingSample {
     pub points: Vec<[f32; 2]>,
     /// The hinted advance width in whole pixels; none where it is not known.
     pub advance: Option<i32>,
+    /// What the hints ask of a renderer in black and white.
+    pub dropout: Dropout,
     /// The exact coverage of the hinted outline.
     pub bitmap: Bitmap,
     /// Whether hinting was predicted from other sizes, not drawn by the teacher.
@@ -42,7 +45,14 @@ impl GlyphSamples {
         let unhinted = |ppem: u16| {
             let points: Vec<_> = self.outline.points.iter().map(|p| p.map(|v| v * f32::from(ppem))).collect();
             let bitmap = self.outline.with_points(&points)?.rasterize()?;
-            Ok(TrainingSample { ppem, points, advance: None, bitmap, predicted: false })
+            Ok(TrainingSample {
+                ppem,
+                points,
+                advance: None,
+                dropout: Dropout::default(),
+                bitmap,
+                predicted: false,
+            })
         };
         [last + last.div_ceil(2), last * 2].map(unhinted).into_iter().collect()
     }
@@ -70,13 +80,14 @@ impl GlyphSamples {
                 hint_error = hint_error.take().or(error);
                 let bitmap = hinted.rasterize()?;
                 let advance = hinted.advance.map(|pixels| pixels.round() as i32);
+                let dropout = hinted.dropout;
                 let points = if hinted.has_contours_of(&outline) {
                     hinted.points
                 } else {
                     contours_change = true;
                     outline.points.iter().map(|p| p.map(|v| v * f32::from(at.ppem()))).collect()
                 };
-                Ok(TrainingSample { ppem: at.ppem(), points, advance, bitmap, predicted: false })
+                Ok(TrainingSample { ppem: at.ppem(), points, advance, dropout, bitmap, predicted: false })
             })
             .collect::<Result<_, Error>>()?;
         Ok(Self { gid, outline, hint_error, contours_change, sizes })

@@ -5,7 +5,7 @@
 mod samples;
 
 use nfr::{Font, Rasterizer, Target};
-use nfr_convert::compact::compact;
+use nfr_convert::combine::compact;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::teacher::Teacher;
 use nfr_convert::{Conversion, Options, Quality, convert};

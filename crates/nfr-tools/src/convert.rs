@@ -1,5 +1,6 @@
 //! `nfr-convert`: from a hinted font to a neural one.
 
+mod into;
 mod summary;
 
 use std::ops::RangeInclusive;
@@ -12,6 +13,7 @@ use super::exactness::exceptions;
 use super::failure::Failure;
 use super::files::{Output, read, same_file};
 use super::progress::{Reporter, Verbosity, print_line};
+use into::Existing;
 use nfr::Target;
 use nfr_convert::closure::{LayoutFeatures, close};
 use nfr_convert::compare::fonts::FontPair;
@@ -45,18 +47,18 @@ pub struct Args {
     /// Convert only the glyphs that are named, without what layout and composites need, .notdef and the space
     #[arg(long)]
     no_closure: bool,
-    /// The sizes to learn, in pixels per em: a range, which may have a step, as in 8-64:2
+    /// The sizes to learn, in pixels per em: a range, which may have a step, as in 8-64:2 [default: 8-64, or those of --into]
     ///
     /// With --train-ppem, the sizes that the figures are about.
-    #[arg(long, value_name = "SIZES", default_value = "8-64")]
-    ppem: PpemList,
+    #[arg(long, value_name = "SIZES")]
+    ppem: Option<PpemList>,
     /// Learn these sizes instead of those of --ppem; what hinting does at the sizes between is predicted from
     /// them
     #[arg(long, value_name = "SIZES")]
     train_ppem: Option<PpemList>,
-    /// What to hint for: smooth, mono or lcd
-    #[arg(long, value_name = "TARGET", default_value_t, value_parser = target)]
-    target: Target,
+    /// What to hint for: smooth, mono or lcd [default: smooth, or that of --into]
+    #[arg(long, value_name = "TARGET", value_parser = target)]
+    target: Option<Target>,
     /// Where models have their shapes from: outline (the font's own), field (their own), or auto, which is outline unless the
     /// outlines are dropped; fields need a build with --features train
     #[arg(long, value_name = "SHAPE", default_value = "auto", value_parser = shape)]
@@ -84,6 +86,12 @@ pub struct Args {
     /// Metrics, characters and layout stay. Everything else draws these glyphs as blanks. Their models are fields.
     #[arg(long)]
     drop_outlines: bool,
+    /// Add what is missing to the models of a neural font that was made from the same input
+    ///
+    /// The output has all of its models, byte for byte what they draw, and those of the selected glyphs that it lacks. The sizes and the
+    /// target are its own. The output may be this font itself.
+    #[arg(long, value_name = "NEURAL")]
+    into: Option<PathBuf>,
     /// Go on where an interrupted conversion to the same output stopped
     ///
     /// While it runs, a conversion keeps the glyphs that are ready in OUTPUT.partial. If it is interrupted, the
@@ -130,12 +138,19 @@ fn quality(text: &str) -> Result<Quality, String> {
 /// Wrong usage, an input that cannot teach, an output that cannot be written. An existing output is then as
 /// it was.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let sizes = check_usage(args)?;
+    check_paths(args)?;
     let input = read(&args.input)?;
-    let prepared = prepare(args, &input, sizes).map_err(|e| e.at(args.input.display()))?;
+    let existing = args.into.as_ref().map(|path| Existing::open(path, &input, args.index)).transpose()?;
+    let subject = Subject::new(args, existing.as_ref())?;
+    let prepared = prepare(args, &input, &subject).map_err(|e| e.at(args.input.display()))?;
     let Prepared { options, reporter, added } = prepared;
     let output = Output::new(&args.output)?;
     let report = args.report.as_deref().map(Output::new).transpose()?;
+    if options.gids.is_empty() {
+        let path = args.into.as_deref().unwrap_or(&args.output).display();
+        reporter.note(&format!("{path} has models of all selected glyphs already"));
+        return output.write(&existing.map_or(Vec::new(), Existing::into_data));
+    }
 
     let partial = output.partial();
     let partial = partial.map(|path| Partial::open(&path, &input, &options, args.resume)).transpose()?;
@@ -152,7 +167,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let converted = resume(&input, &options, &reporter, partial.as_ref());
     let elapsed = reporter.elapsed();
     drop(reporter);
-    let conversion = match converted {
+    let mut conversion = match converted {
         Ok(conversion) => conversion,
         Err(e) => {
             if !e.may_pass() {
@@ -169,20 +184,23 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             conversion.left_out[0]
         )));
     }
+    if let Some(existing) = &existing {
+        existing.merge(&input, &options, &mut conversion)?;
+    }
     // The figures are those of the finished file, not of the models in memory.
     let names = [&args.input, &args.output].map(|path| path.display().to_string());
     let names = [names[0].as_str(), &names[1]];
     let pair = FontPair::open(&input, args.index, &conversion.font)?;
     let mut gids = options.gids.clone();
     gids.retain(|gid| conversion.left_out.binary_search(gid).is_err());
-    let comparison = pair.report(names, &gids, &args.ppem, args.jobs)?;
+    let comparison = pair.report(names, &gids, &subject.ppem, args.jobs)?;
     let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&comparison));
     if !failures.is_empty() {
         // Trained glyphs are kept: with another threshold --resume needs no training.
         return Err(Failure::failed(format!("{}; no font is written", failures.join("; "))));
     }
     if options.fidelity.is_exact() && !args.quiet {
-        warn_of_exceptions(&pair, names, args, &options)?;
+        warn_of_exceptions(&pair, names, &subject.ppem, &options)?;
     }
     output.write(&conversion.font)?;
     partial.map(Partial::remove).transpose()?;
@@ -190,8 +208,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let about = About {
         input: args.input.display().to_string(),
         output: args.output.display().to_string(),
-        target: args.target.name(),
-        ppem: args.ppem.to_string(),
+        into: args.into.as_ref().map(|path| path.display().to_string()),
+        target: subject.target.name(),
+        ppem: subject.ppem.to_string(),
         seed: args.seed,
     };
     let contents = summary(about, &input, &conversion, &comparison, elapsed.as_secs_f64());
@@ -206,20 +225,20 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn warn_of_exceptions(
     pair: &FontPair<'_>,
     names: [&str; 2],
-    args: &Args,
+    ppem: &PpemList,
     options: &Options,
 ) -> Result<(), Failure> {
     let (first, last) = pair.font().ppem_range();
-    let sizes = args.ppem.union(&PpemList::from(first..=last));
-    let verification = pair.verify(names, &options.gids, &sizes, args.jobs)?;
+    let sizes = ppem.union(&PpemList::from(first..=last));
+    let verification = pair.verify(names, &options.gids, &sizes, options.jobs)?;
     if let Some(line) = exceptions(&verification, (&(first..=last), options.ppem_step)) {
         print_line(&format!("warning: {line}"));
     }
     Ok(())
 }
 
-/// The sizes to learn, and the step between them.
-fn check_usage(args: &Args) -> Result<(RangeInclusive<u16>, u16), Failure> {
+/// Refuses to write over what is read.
+fn check_paths(args: &Args) -> Result<(), Failure> {
     let refuse_same = |a: &Path, b: &Path, what: &str| {
         if same_file(a, b) { Err(Failure::usage(format!("{what}; write to another file"))) } else { Ok(()) }
     };
@@ -228,15 +247,38 @@ fn check_usage(args: &Args) -> Result<(RangeInclusive<u16>, u16), Failure> {
         refuse_same(&args.input, report, "the report is the input")?;
         refuse_same(&args.output, report, "the report is the output")?;
     }
-    let (option, list) = match &args.train_ppem {
-        Some(list) => ("--train-ppem", list),
-        None => ("--ppem", &args.ppem),
-    };
-    list.evenly_spaced().ok_or_else(|| {
-        Failure::usage(format!(
-            "{option} {list} is uneven; training takes one range with one step, as in 8-64 or 8-64:2"
-        ))
-    })
+    Ok(())
+}
+
+/// What is learnt, for which sizes and which target.
+struct Subject<'a> {
+    existing: Option<&'a Existing>,
+    /// The sizes that the figures are about.
+    ppem: PpemList,
+    /// The sizes to learn, and the step between them.
+    learnt: (RangeInclusive<u16>, u16),
+    target: Target,
+}
+
+impl<'a> Subject<'a> {
+    fn new(args: &Args, existing: Option<&'a Existing>) -> Result<Self, Failure> {
+        let default = || existing.map_or_else(|| PpemList::from(8..=64), |existing| existing.ppem.clone());
+        let ppem = args.ppem.clone().unwrap_or_else(default);
+        let target = args.target.or(existing.map(|existing| existing.target)).unwrap_or_default();
+        let (option, list) = match &args.train_ppem {
+            Some(list) => ("--train-ppem", list),
+            None => ("--ppem", &ppem),
+        };
+        let learnt = list.evenly_spaced().ok_or_else(|| {
+            Failure::usage(format!(
+                "{option} {list} is uneven; training takes one range with one step, as in 8-64 or 8-64:2"
+            ))
+        })?;
+        if let Some(existing) = existing {
+            existing.check(&PpemList::from(learnt.0.clone()), target, args.drop_outlines)?;
+        }
+        Ok(Self { existing, ppem, learnt, target })
+    }
 }
 
 /// What is known before the training.
@@ -248,19 +290,16 @@ struct Prepared {
 }
 
 /// Checks all that can be known before the training.
-fn prepare(
-    args: &Args,
-    input: &[u8],
-    (ppem, ppem_step): (RangeInclusive<u16>, u16),
-) -> Result<Prepared, Failure> {
+fn prepare(args: &Args, input: &[u8], subject: &Subject<'_>) -> Result<Prepared, Failure> {
+    let (ppem, ppem_step) = subject.learnt.clone();
     let font = open(input, args.index)?;
     if has_models(&font) {
         return Err(Failure::failed(
             "the font carries an 'Nfrt' table already; convert the hinted font that it was made from",
         ));
     }
-    let teacher = Teacher::new(&font, args.target)?;
-    for size in args.ppem.sizes().iter().copied().chain(ppem.clone().step_by(ppem_step.into())) {
+    let teacher = Teacher::new(&font, subject.target)?;
+    for size in subject.ppem.sizes().iter().copied().chain(ppem.clone().step_by(ppem_step.into())) {
         teacher.at(size)?;
     }
     let warn = |line: &str| {
@@ -269,15 +308,15 @@ fn prepare(
         }
     };
     let all = 0..=u16::try_from(glyph_count(&font)?.saturating_sub(1)).unwrap_or(u16::MAX);
-    let gids = args.selection.resolve(&font, all, warn)?;
-    let named = gids.len();
+    let named = args.selection.resolve(&font, all, warn)?;
     let gids = if args.selection.is_empty() || args.no_closure {
-        gids
+        named.clone()
     } else {
         let composed = args.selection.compositions(&font)?;
-        close(&font, &[gids, composed].concat(), &args.layout_features)?
+        close(&font, &[named.clone(), composed].concat(), &args.layout_features)?
     };
-    let added = gids.len() - named;
+    let gids = subject.existing.map_or_else(|| gids.clone(), |existing| existing.missing(&gids));
+    let added = gids.iter().filter(|gid| named.binary_search(gid).is_err()).count();
     let verbosity = match (args.quiet, args.verbose) {
         (true, _) => Verbosity::Quiet,
         (_, true) => Verbosity::Verbose,
@@ -289,11 +328,11 @@ fn prepare(
         gids,
         ppem,
         ppem_step,
-        target: args.target,
+        target: subject.target,
         seed: args.seed,
         jobs: args.jobs,
         backend: args.backend,
-        shape: args.shape,
+        shape: subject.existing.map_or(args.shape, |existing| existing.shape(args.shape)),
         drop_outlines: args.drop_outlines,
         ..Options::default().with_quality(args.quality)
     };

@@ -9,7 +9,9 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::files::{open_neural, read};
 use nfr::internals::network::Precision;
-use nfr::internals::table::{MAJOR_VERSION, MINOR_VERSION, NETWORK_MINOR_VERSION};
+use nfr::internals::table::{DropoutModes, MAJOR_VERSION, MINOR_VERSION, NETWORK_MINOR_VERSION, Table};
+use nfr_convert::compare::certificate::StatedErrors;
+use nfr_convert::compare::report::glyph_count_text;
 use nfr_convert::select::glyph_count;
 
 /// Says what a neural font carries
@@ -17,9 +19,63 @@ use nfr_convert::select::glyph_count;
 pub struct Args {
     /// The neural font
     font: PathBuf,
+    /// Print a line for each glyph that has a model: its bytes, and what the certificate says of its errors
+    #[arg(long, conflicts_with = "json")]
+    glyphs: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+}
+
+/// What the certificate says.
+#[derive(Debug, Serialize)]
+struct CertificateInfo {
+    teacher: String,
+    converter: String,
+    options: String,
+    is_exact: bool,
+    glyphs: Vec<GlyphInfo>,
+}
+
+#[derive(Debug, Serialize)]
+struct GlyphInfo {
+    gid: u16,
+    #[serde(flatten)]
+    errors: StatedErrors,
+}
+
+impl CertificateInfo {
+    fn of(table: &Table<'_>) -> Option<Self> {
+        let certificate = table.certificate()?;
+        let glyphs = table.gids().zip(certificate.errors());
+        Some(Self {
+            teacher: certificate.teacher.to_owned(),
+            converter: certificate.converter.to_owned(),
+            options: certificate.options.to_owned(),
+            is_exact: certificate.is_exact,
+            glyphs: glyphs.map(|(gid, errors)| GlyphInfo { gid, errors: errors.into() }).collect(),
+        })
+    }
+
+    fn print(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(out, "teacher         {}", self.teacher)?;
+        writeln!(out, "converted by    {} {}", self.converter, self.options)?;
+        let Some(worst) = self.glyphs.iter().max_by(|a, b| a.errors.mae.total_cmp(&b.errors.mae)) else {
+            return Ok(());
+        };
+        let mean = self.glyphs.iter().map(|glyph| glyph.errors.mae).sum::<f64>() / self.glyphs.len() as f64;
+        let bad16 = self.glyphs.iter().map(|glyph| glyph.errors.bad16).fold(0.0, f64::max);
+        let max = self.glyphs.iter().map(|glyph| glyph.errors.max).max().unwrap_or(0);
+        writeln!(
+            out,
+            "errors          mae {mean:.5} on average and {:.5} for glyph {}; bad16 {:.3} % and a pixel's {max} of 255, at most",
+            worst.errors.mae,
+            worst.gid,
+            100.0 * bad16
+        )?;
+        let exact = if self.is_exact { "all hinted points are the teacher's" } else { "not promised" };
+        writeln!(out, "exactness       {exact}")
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -41,6 +97,7 @@ struct Info {
     network_bytes: usize,
     /// Bits of their weights, each kind once.
     network_bits: Vec<u8>,
+    certificate: Option<CertificateInfo>,
 }
 
 /// Runs `nfr info`.
@@ -75,6 +132,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         networks: networks.len(),
         network_bytes: network_bytes?,
         network_bits: network_bits?.into_iter().collect(),
+        certificate: CertificateInfo::of(&table),
     };
     let mut out = io::stdout().lock();
     if args.json {
@@ -103,5 +161,55 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         (false, false) => "changed after training; convert the font again",
     };
     writeln!(out, "outlines        {outlines}")?;
+    match &info.certificate {
+        Some(certificate) => certificate.print(&mut out)?,
+        None => writeln!(out, "certificate     none")?,
+    }
+    if let Some(dropout) = table.dropout() {
+        writeln!(out, "drop-outs       {}", dropout_text(first_ppem, dropout))?;
+    }
+    if args.glyphs {
+        print_glyphs(&mut out, &table, info.certificate.as_ref())?;
+    }
     Ok(())
+}
+
+/// A line for each glyph that has a model.
+fn print_glyphs(
+    out: &mut impl Write,
+    table: &Table<'_>,
+    certificate: Option<&CertificateInfo>,
+) -> Result<(), Failure> {
+    writeln!(out, "\n{:>7}{:>8}{:>11}{:>11}{:>6}", "glyph", "bytes", "mae", "bad16", "max")?;
+    for (index, gid) in table.gids().enumerate() {
+        write!(out, "{gid:>7}{:>8}", table.model_len(gid.into())?)?;
+        match certificate.and_then(|certificate| certificate.glyphs.get(index)) {
+            Some(GlyphInfo { errors: StatedErrors { mae, bad16, max }, .. }) => {
+                writeln!(out, "{mae:>11.6}{bad16:>11.6}{max:>6}")?;
+            }
+            None => writeln!(out, "{:>11}{:>11}{:>6}", "-", "-", "-")?,
+        }
+    }
+    Ok(())
+}
+
+/// The modes of drop-out control for people.
+fn dropout_text(first_ppem: u16, dropout: &DropoutModes<'_>) -> String {
+    let (mut first, mut parts) = (first_ppem, Vec::new());
+    for (last, mode) in dropout.ranges() {
+        let stubs = if mode.fills_stubs() { " with stubs" } else { "" };
+        let name = match (mode.is_enabled(), mode.is_smart()) {
+            (false, _) => "none",
+            (true, true) => "smart",
+            (true, false) => "simple",
+        };
+        let sizes = if first == last { last.to_string() } else { format!("{first}-{last}") };
+        parts.push(format!("{name}{stubs} at {sizes} ppem"));
+        first = last + 1;
+    }
+    let glyphs: BTreeSet<u16> = dropout.exceptions().map(|exception| exception.gid).collect();
+    if !glyphs.is_empty() {
+        parts.push(format!("others for {}", glyph_count_text(glyphs.len())));
+    }
+    parts.join(", ")
 }

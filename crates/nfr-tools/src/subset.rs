@@ -12,12 +12,13 @@ use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read, same_file};
 use super::progress::print_line;
 use nfr_convert::closure::LayoutFeatures;
-use nfr_convert::compact::compact;
+use nfr_convert::combine::compact;
 
 /// The module for fontTools.
-const MODULE: [(&str, &str); 5] = [
+const MODULE: [(&str, &str); 6] = [
     ("__init__.py", include_str!("../../../python/nfr/__init__.py")),
     ("coder.py", include_str!("../../../python/nfr/coder.py")),
+    ("composed.py", include_str!("../../../python/nfr/composed.py")),
     ("subset.py", include_str!("../../../python/nfr/subset.py")),
     ("table.py", include_str!("../../../python/nfr/table.py")),
     ("outline-priors.txt", include_str!("../../../spec/outline-priors.txt")),

@@ -1,21 +1,27 @@
-//! `nfr verify`: proves what a neural font keeps of its original's hinting.
+//! `nfr verify`: measures again what a neural font's certificate says, and proves what it keeps of its original's hinting.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
+
+use serde::Serialize;
 
 use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{modelled, open_neural, read};
 use super::progress::print_line;
+use nfr_convert::compare::certificate::CertificateCheck;
 use nfr_convert::compare::fonts::FontPair;
+use nfr_convert::compare::verification::Verification;
 use nfr_convert::open::{has_models, open};
 use nfr_convert::ppem::PpemList;
 
-/// Proves what a neural font keeps: compares hinted points, advance widths and side bearings with the original's
+/// Checks a neural font against its original: its certificate, and hinted points, advance widths and side bearings
 ///
-/// Every point, on the curve or off it, is compared along x and y in 1/64 pixel with where skrifa's interpreter puts it, with the
-/// settings that the font was converted with. Exits with 0 if everything is equal, with 1 if something differs or a glyph cannot be
-/// compared, and with 2 if an error keeps it from comparing.
+/// The errors of each glyph's bitmaps are measured again, at all sizes of the models, and have to be no larger than the font's
+/// certificate says. Every point, on the curve or off it, is compared along x and y in 1/64 pixel with where skrifa's interpreter puts
+/// it, with the settings that the font was converted with; it has to be there if the font was converted to be exact (--quality 100),
+/// or if --at-most says how far it may be. Exits with 0 if all of that holds, with 1 if not, or if a glyph has no model or another
+/// outline, and with 2 if an error keeps it from comparing.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The hinted font
@@ -24,7 +30,7 @@ pub struct Args {
     neural: PathBuf,
     #[command(flatten)]
     selection: SelectionArgs,
-    /// Sizes in pixels per em, as in 12, 8-64, 8-64:2 or 9,12,16-20 [default: all trained sizes]
+    /// Sizes at which points are compared, in pixels per em, as in 12, 8-64, 8-64:2 or 9,12,16-20 [default: all trained sizes]
     #[arg(long, value_name = "SIZES")]
     ppem: Option<PpemList>,
     /// The font's index, if the original is a collection
@@ -33,10 +39,9 @@ pub struct Args {
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
-    /// Accept points that are off by so much along x or y, in 1/64 pixel, and side bearings; advance widths must be
-    /// equal all the same
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    at_most: u32,
+    /// Points and side bearings may be off by so much along x or y, in 1/64 pixel; advance widths must be equal
+    #[arg(long, value_name = "N")]
+    at_most: Option<u32>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -46,14 +51,14 @@ pub struct Args {
 ///
 /// # Errors
 ///
-/// With exit code 1 if something differs or a glyph cannot be compared, with 2 for fonts that cannot be read or do not belong
+/// With exit code 1 if something does not hold, with 2 for fonts that cannot be read or do not belong
 /// together.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let failures = verify(args).map_err(Failure::with_code_of_errors)?;
     if failures.is_empty() { Ok(()) } else { Err(Failure::failed(failures.join("; "))) }
 }
 
-/// Compares the fonts and prints the result. Returns what is not equal.
+/// Compares the fonts and prints the result. Returns what does not hold.
 fn verify(args: &Args) -> Result<Vec<String>, Failure> {
     let (original, neural) = (read(&args.original)?, read(&args.neural)?);
     check_roles(args, &original, &neural)?;
@@ -65,13 +70,43 @@ fn verify(args: &Args) -> Result<Vec<String>, Failure> {
     let ppem = args.ppem.clone().unwrap_or_else(trained);
     let names = [&args.original, &args.neural].map(|path| path.display().to_string());
     let verification = pair.verify([&names[0], &names[1]], &gids, &ppem, args.jobs)?;
+    let certificate = pair.check_certificate(&gids, args.jobs)?;
+    let checked = Checked { verification, certificate };
     let text = if args.json {
-        serde_json::to_string(&verification).map_err(|e| Failure::failed(e.to_string()))? + "\n"
+        serde_json::to_string(&checked).map_err(|e| Failure::failed(e.to_string()))? + "\n"
     } else {
-        verification.to_string()
+        let certificate = checked.certificate.as_ref().map(CertificateCheck::to_string);
+        format!("{}{}", checked.verification, certificate.unwrap_or_else(|| "certificate   none\n".into()))
     };
     io::stdout().write_all(text.as_bytes())?;
-    Ok(verification.failures(args.at_most))
+    Ok(checked.failures(args.at_most))
+}
+
+/// What was compared.
+#[derive(Debug, Serialize)]
+struct Checked {
+    #[serde(flatten)]
+    verification: Verification,
+    certificate: Option<CertificateCheck>,
+}
+
+impl Checked {
+    fn failures(&self, at_most: Option<u32>) -> Vec<String> {
+        let is_exact = self.certificate.as_ref().is_some_and(|certificate| certificate.is_exact);
+        let mut failures = match at_most.or(is_exact.then_some(0)) {
+            Some(at_most) => self.verification.failures(at_most),
+            None => self.verification.undrawn().into_iter().collect(),
+        };
+        match &self.certificate {
+            Some(certificate) => failures.extend(certificate.failures()),
+            None if at_most.is_none() => {
+                failures
+                    .push("the font has no certificate; say with --at-most how far points may be off".into());
+            }
+            None => {}
+        }
+        failures
+    }
 }
 
 /// Refuses an original that was converted itself: its hints are gone.

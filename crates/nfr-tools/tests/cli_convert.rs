@@ -344,3 +344,38 @@ fn what_shapers_put_in_the_place_of_characters_is_converted() {
     let font = Font::new(std::fs::read(&output).unwrap()).unwrap();
     assert!(has(&font, 'é') && has(&font, ' ') && has(&font, '\u{301}'));
 }
+
+#[test]
+fn models_are_added_to_a_font_that_has_some() {
+    let directory = Directory::new();
+    let (first, second) = (directory.name("first.ttf"), directory.name("second.ttf"));
+    nfr_convert(&["-q", "--text", "aé", "--ppem", "9-20", SANS, &first]).succeeds();
+    let added = ["--text", "agé", "--into", &first, SANS, &second];
+    let run = nfr_convert(&added).succeeds();
+    assert!(run.stdout.contains(&format!("1 glyph beside those of {first} at 9-20 ppem")), "{}", run.stdout);
+    let info = nfr(&["info", "--glyphs", &second]).succeeds().stdout;
+    // .notdef, the space, a, e, g, the accent, é.
+    assert!(info.contains("7 of 2620 have models") && info.contains("9-20 ppem"), "{info}");
+    assert_eq!(info.lines().count(), info.lines().position(|line| line.contains("bytes ")).unwrap() + 1 + 7);
+    nfr(&["verify", SANS, &second]).succeeds();
+    // The font itself may be the output, and a second time there is nothing to add.
+    nfr_convert(&["-q", "--text", "agé", "--into", &first, SANS, &first]).succeeds();
+    let [first_bytes, second_bytes] = [&first, &second].map(|name| std::fs::read(name).unwrap());
+    assert_eq!(first_bytes, second_bytes);
+    let run = nfr_convert(&["--text", "agé", "--into", &first, SANS, &first]).succeeds();
+    assert!(run.stderr.contains("has models of all selected glyphs already"), "{}", run.stderr);
+    assert_eq!(std::fs::read(&first).unwrap(), first_bytes);
+    // What does not fit is refused, and nothing is lost.
+    let refused = |more: &[&str], part: &str| {
+        let args = [&["--text", "x", "--into", &first], more, &[SANS, &second]].concat();
+        nfr_convert(&args).rejects_usage(&["first.ttf", part]);
+    };
+    refused(&["--ppem", "8-20"], "for 9-20 ppem");
+    refused(&["--target", "mono"], "for smooth");
+    refused(&["--drop-outlines"], "beside the outlines");
+    let serif = SANS.replace("Sans-", "Serif-");
+    nfr_convert(&["--text", "x", "--into", &first, &serif, &second])
+        .fails_with(&["first.ttf", "2602 glyphs"]);
+    nfr_convert(&["--text", "x", "--into", SANS, SANS, &second]).fails_with(&["no 'Nfrt' table"]);
+    assert_eq!(std::fs::read(&second).unwrap(), second_bytes);
+}

@@ -51,7 +51,9 @@ fn a_font_of_quality_100_is_equal_and_the_exit_code_is_0() {
                 ["--no-closure", "--text", TEXT, "--quality", "100", "--target", target, &original, &output];
             assert_eq!(warnings(&args), Vec::<String>::new());
             let run = nfr(&["verify", &original, &output]).succeeds();
-            for part in ["4 glyphs, 8-64 ppem, target ", target, "compared, 0 differ\n", "0/64 pixel"] {
+            let holds = "certificate   holds: the errors of 4 glyphs";
+            for part in ["4 glyphs, 8-64 ppem, target ", target, "compared, 0 differ\n", "0/64 pixel", holds]
+            {
                 assert!(run.stdout.contains(part), "{part:?} is not in {}", run.stdout);
             }
             assert!(run.stderr.is_empty() && !run.stdout.contains("worst"), "{}", run.stdout);
@@ -61,7 +63,14 @@ fn a_font_of_quality_100_is_equal_and_the_exit_code_is_0() {
 
 #[test]
 fn a_difference_is_told_with_the_worst_glyphs_and_exits_with_1() {
-    let run = nfr(&["verify", SANS, &converted().default]);
+    // The certificate of the default quality promises no points.
+    let run = nfr(&["verify", SANS, &converted().default]).succeeds();
+    assert!(
+        run.stdout.contains("certificate   holds") && run.stdout.contains("worst glyphs"),
+        "{}",
+        run.stdout
+    );
+    let run = nfr(&["verify", SANS, &converted().default, "--at-most", "0"]);
     assert_eq!(run.code, 1);
     assert!(run.stderr.starts_with("error: ") && run.stderr.contains("points differ, by up to "));
     assert_eq!(run.stderr.lines().count(), 1);
@@ -80,6 +89,10 @@ fn json_has_totals_sizes_and_glyphs() {
         (run.code, serde_json::from_str::<Value>(&run.stdout).unwrap())
     };
     let (code, json) = parsed(&[&converted().default]);
+    assert_eq!((code, &json["certificate"]["glyphs"]), (0, &4.into()));
+    assert_eq!(json["certificate"]["exceeded"], serde_json::json!([]));
+    assert!(json["certificate"]["teacher"].as_str().unwrap().starts_with("skrifa "));
+    let (code, json) = parsed(&[&converted().default, "--at-most", "0"]);
     assert_eq!((code, &json["target"], &json["ppem"]), (1, &"smooth".into(), &"8-64".into()));
     assert_eq!((&json["glyphs"], &json["glyph_sizes"]), (&4.into(), &228.into()));
     let number =
@@ -112,21 +125,49 @@ fn json_has_totals_sizes_and_glyphs() {
 }
 
 #[test]
+fn a_certificate_that_does_not_hold_exits_with_1_and_one_is_asked_for() {
+    let directory = Directory::new();
+    let default = std::fs::read(&converted().default).unwrap();
+    // The hints are others.
+    let mut cvt = samples::table(&sans(), b"cvt ");
+    cvt.iter_mut().skip(1).step_by(2).for_each(|byte| *byte = byte.wrapping_add(90));
+    let original = directory.write("original.ttf", &samples::with_tables(&sans(), &[(b"cvt ", cvt)]));
+    let run = nfr(&["verify", &original, &converted().default]);
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.starts_with("error: the certificate does not hold: the errors of "), "{}", run.stderr);
+    assert!(run.stdout.contains("certificate   does not hold for ") && run.stdout.contains(", max "));
+    // Bit 3 of the flags.
+    let mut nfrt = samples::table(&default, b"Nfrt");
+    nfrt[5] &= !8;
+    let without = directory.write("without.ttf", &samples::with_tables(&default, &[(b"Nfrt", nfrt)]));
+    let run = nfr(&["verify", SANS, &without]);
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("no certificate") && run.stderr.contains("--at-most"), "{}", run.stderr);
+    nfr(&["verify", SANS, &without, "--at-most", "64"]).succeeds();
+    assert!(nfr(&["info", &without]).succeeds().stdout.contains("certificate     none"));
+}
+
+#[test]
 fn glyphs_that_cannot_be_compared_are_told_with_the_reason() {
     let directory = Directory::new();
     let exact = std::fs::read(&converted().exact).unwrap();
     let stale = directory.write("stale.ttf", &with_changed_outline(&exact, gid(&exact, 'a')));
     let run = nfr(&["verify", SANS, &stale, "--text", "aRb"]);
     assert_eq!((run.code, run.stderr.as_str()), (1, "error: 2 glyphs cannot be compared\n"));
-    for part in ["1 glyph without a model", "1 glyph whose outline was changed", "57 compared, all points"] {
+    for part in [
+        "1 glyph without a model",
+        "1 glyph whose outline or advance width was changed",
+        "57 compared, all points",
+    ] {
         assert!(run.stdout.contains(part), "{part:?} is not in {}", run.stdout);
     }
     if cfg!(feature = "train") {
         let dropped = directory.name("dropped.ttf");
         let args = ["--no-closure", "--text", "i", "--ppem", "12", "--drop-outlines", SANS, &dropped];
         nfr_convert(&args).succeeds();
-        let run = nfr(&["verify", SANS, &dropped]);
-        assert!(run.code == 1 && run.stdout.contains("1 glyph drawn from a field"), "{}", run.stdout);
+        let run = nfr(&["verify", SANS, &dropped]).succeeds();
+        assert!(run.stdout.contains("1 glyph drawn from a field"), "{}", run.stdout);
+        assert_eq!(nfr(&["verify", SANS, &dropped, "--at-most", "64"]).code, 1);
     }
 }
 

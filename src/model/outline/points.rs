@@ -35,8 +35,9 @@ impl OutlinePoints {
         starts.zip(&self.ends).map(|(start, end)| start..usize::from(*end))
     }
 
-    /// A hash of all points, by which a model knows its outline: FNV-1a of 32 bits, folded to 16.
-    pub fn hash(&self) -> u16 {
+    /// A hash of all points and of the advance width in font units, by which a model knows its outline: FNV-1a of 32 bits, folded
+    /// to 16.
+    pub fn hash(&self, advance: u16) -> u16 {
         let mut hash = 0x811C_9DC5u32;
         let mut add = |value: u16| hash = (hash ^ u32::from(value)).wrapping_mul(0x0100_0193);
         let [x, y] = &self.coordinates;
@@ -46,6 +47,7 @@ impl OutlinePoints {
             add(u16::from(*on_curve));
         }
         self.ends.iter().for_each(|end| add(*end));
+        add(advance);
         (hash ^ hash >> 16) as u16
     }
 

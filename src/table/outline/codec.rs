@@ -115,7 +115,8 @@ pub fn code<C: Coder>(
     if model.bits(MESSAGE, 0, 2, HINTS) != HINTS {
         return Err(malformed("is not that of an outline"));
     }
-    if raw(model, points.hash()) != points.hash() {
+    let hash = points.hash(known.advance);
+    if raw(model, hash) != hash {
         return Err(Damage::Stale);
     }
     let OutlineWeights { axes, advances } = weights;

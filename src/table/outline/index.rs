@@ -33,8 +33,8 @@ fn truncated(offset: usize) -> Error {
 }
 
 impl<'a> OutlineIndex<'a> {
-    /// Finds the arrays, which begin with their counts at `at`.
-    pub(in crate::table) fn parse(data: FontData<'a>, at: usize) -> Result<Self, Error> {
+    /// Finds the arrays, which begin with their counts at `at`, and the offset behind them.
+    pub(in crate::table) fn parse(data: FontData<'a>, at: usize) -> Result<(Self, usize), Error> {
         let count = |k: usize| data.read_at::<u16>(at + 2 * k).map(usize::from).map_err(|_| truncated(at));
         let [ranges, x, y, lists] = [count(0)?, count(1)?, count(2)?, count(3)?];
         let payload_len = data.read_at::<u32>(at + 8).map_err(|_| truncated(at))? as usize;
@@ -46,7 +46,7 @@ impl<'a> OutlineIndex<'a> {
         let glyphs = check_ranges(ranges, ranges_at)?;
         let payload_at = blocks_at + 4 * (glyphs + x + y + lists).div_ceil(BLOCK);
         let end = payload_at.checked_add(payload_len).ok_or_else(|| truncated(payload_at))?;
-        Ok(Self {
+        let index = Self {
             ranges,
             glyphs,
             levels: [
@@ -56,7 +56,8 @@ impl<'a> OutlineIndex<'a> {
             lists,
             blocks: data.read_array(blocks_at..payload_at).map_err(|_| truncated(blocks_at))?,
             payload: data.as_bytes().get(payload_at..end).ok_or_else(|| truncated(payload_at))?,
-        })
+        };
+        Ok((index, end))
     }
 
     /// The number of glyphs.

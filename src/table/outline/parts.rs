@@ -25,6 +25,17 @@ pub struct StoredPart {
     pub lists: [u16; 2],
 }
 
+/// What is known of a composed glyph before its message is read.
+#[derive(Clone, Copy)]
+pub struct KnownGlyph<'a> {
+    /// Its parts in `glyf`, without lists, if it has some there.
+    pub parts: Option<&'a [StoredPart]>,
+    /// The advance width in font units.
+    pub advance: u16,
+    /// The [hash](crate::model::outline::OutlinePoints::hash) of its outline; none if it cannot be read.
+    pub outline_hash: &'a dyn Fn() -> Option<u16>,
+}
+
 /// The context of [`UNUSUAL`] for parts that are not those of `glyf`.
 const OTHER_PARTS: usize = 2;
 
@@ -49,12 +60,12 @@ pub struct StoredGlyph {
     pub advances: Advances,
 }
 
-/// Encodes a composed glyph; `known` are its parts in `glyf`, without lists.
+/// Encodes a composed glyph.
 ///
 /// # Errors
 ///
-/// `TooLarge` for more parts than the format allows.
-pub fn encode_parts(glyph: &StoredGlyph, known: Option<&[StoredPart]>) -> Result<Vec<u8>, Damage> {
+/// `TooLarge` for more parts than the format allows; `Stale` for an outline that cannot be read.
+pub fn encode_parts(glyph: &StoredGlyph, known: &KnownGlyph<'_>) -> Result<Vec<u8>, Damage> {
     let mut model = ContextModel::new(Encoder::new(), &OUTLINE_PRIOR);
     let mut glyph = glyph.clone();
     code_parts(&mut model, &mut glyph.parts, known)?;
@@ -62,12 +73,12 @@ pub fn encode_parts(glyph: &StoredGlyph, known: Option<&[StoredPart]>) -> Result
     Ok(model.coder.finish())
 }
 
-/// Decodes a composed glyph; `known` are its parts in `glyf`, without lists.
+/// Decodes a composed glyph.
 ///
 /// # Errors
 ///
-/// `Stale` if they are not those that it was composed of; `Malformed` or `TooLarge`.
-pub fn decode_parts(bytes: &[u8], known: Option<&[StoredPart]>, sizes: usize) -> Result<StoredGlyph, Damage> {
+/// `Stale` if its outline or its parts are not those that it was composed of; `Malformed` or `TooLarge`.
+pub fn decode_parts(bytes: &[u8], known: &KnownGlyph<'_>, sizes: usize) -> Result<StoredGlyph, Damage> {
     let mut model = ContextModel::new(Decoder::new(bytes), &OUTLINE_PRIOR);
     let mut glyph = StoredGlyph::default();
     code_parts(&mut model, &mut glyph.parts, known)?;
@@ -109,17 +120,22 @@ pub fn code_advances<C: Coder>(model: &mut ContextModel<'_, C>, advances: &mut A
 pub fn code_parts<C: Coder>(
     model: &mut ContextModel<'_, C>,
     parts: &mut Vec<StoredPart>,
-    known: Option<&[StoredPart]>,
+    known: &KnownGlyph<'_>,
 ) -> Result<(), Damage> {
     if model.bits(MESSAGE, 0, 2, COMPOSED) != COMPOSED {
         return Err(malformed("is not that of a composed glyph"));
     }
     let plain = |part: &StoredPart| StoredPart { lists: [0; 2], ..*part };
-    let is_other = C::WRITES && known.is_none_or(|known| !parts.iter().map(plain).eq(known.iter().copied()));
+    let is_other =
+        C::WRITES && known.parts.is_none_or(|known| !parts.iter().map(plain).eq(known.iter().copied()));
     if model.flag(UNUSUAL, [OTHER_PARTS, 0, 0], is_other) {
         let count = model.signed(PART, [0; 3], parts.len() as i32);
         if !(0..=MAX_PARTS as i32).contains(&count) {
             return Err(too_large("parts", count, MAX_PARTS as i32));
+        }
+        let hash = (known.outline_hash)().ok_or(Damage::Stale)?;
+        if raw(model, hash) != hash {
+            return Err(Damage::Stale);
         }
         parts.resize(count as usize, StoredPart::default());
         for part in &mut *parts {
@@ -129,12 +145,13 @@ pub fn code_parts<C: Coder>(
             }
         }
     } else {
-        let known = known.ok_or(Damage::Stale)?;
-        if raw(model, hash(known)) != hash(known) {
+        let parts_of_glyf = known.parts.ok_or(Damage::Stale)?;
+        let hash = hash(parts_of_glyf, known.advance);
+        if raw(model, hash) != hash {
             return Err(Damage::Stale);
         }
         if !C::WRITES {
-            parts.extend(known);
+            parts.extend(parts_of_glyf);
         }
     }
     for part in parts {
@@ -146,11 +163,12 @@ pub fn code_parts<C: Coder>(
     model.check()
 }
 
-/// A hash of parts: FNV-1a of 32 bits, folded to 16.
-fn hash(parts: &[StoredPart]) -> u16 {
+/// A hash of parts and of the advance width: FNV-1a of 32 bits, folded to 16.
+fn hash(parts: &[StoredPart], advance: u16) -> u16 {
     let numbers = parts.iter().flat_map(|part| [part.gid, part.offset[0] as u16, part.offset[1] as u16]);
-    let hash =
-        numbers.fold(0x811C_9DC5u32, |hash, number| (hash ^ u32::from(number)).wrapping_mul(0x0100_0193));
+    let hash = numbers
+        .chain([advance])
+        .fold(0x811C_9DC5u32, |hash, number| (hash ^ u32::from(number)).wrapping_mul(0x0100_0193));
     (hash ^ hash >> 16) as u16
 }
 

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
+use nfr::internals::table::{Bound, CertifiedErrors};
 use nfr::{Bitmap, Placement};
 
 /// A pixel off by more than this, of 255, is visibly wrong: `bad16` counts them.
@@ -95,6 +96,12 @@ impl Sums {
             exact: if self.pixels == 0 { 1.0 } else { self.share(self.exact) },
             pixels: self.pixels,
         }
+    }
+
+    /// What a certificate says of a glyph with these sums.
+    pub fn certified(&self) -> CertifiedErrors {
+        let figures = self.figures();
+        CertifiedErrors { mae: Bound::of(figures.mae), bad16: Bound::of(figures.bad16), max: self.max }
     }
 
     fn share(&self, part: u64) -> f64 {

@@ -1,6 +1,7 @@
 //! How far a neural font is from the hinted one that it was made from: bitmaps (`diff`, `report`), and hinted points (`points`,
-//! `verification`).
+//! `verification`), and what a font's certificate says (`certificate`).
 
+pub mod certificate;
 pub mod diff;
 pub mod fonts;
 pub mod html;

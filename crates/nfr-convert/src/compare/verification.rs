@@ -22,7 +22,7 @@ pub enum NoPoints {
     Network,
     /// It has no model.
     NoModel,
-    /// Its outline was changed after its model was made, so that it is not drawn.
+    /// Its outline or advance width was changed after its model was made, so that it is not drawn.
     Stale,
 }
 
@@ -32,7 +32,7 @@ impl fmt::Display for NoPoints {
             Self::Field => "drawn from a field",
             Self::Network => "drawn by a network",
             Self::NoModel => "without a model",
-            Self::Stale => "whose outline was changed after its model was made",
+            Self::Stale => "whose outline or advance width was changed after its model was made",
         })
     }
 }
@@ -165,6 +165,13 @@ impl Verification {
             failures.push(format!("{} cannot be compared", glyph_count_text(self.not_compared.len())));
         }
         failures
+    }
+
+    /// A line if there are glyphs that are not drawn from a model at all: they have none, or their outline was changed.
+    pub fn undrawn(&self) -> Option<String> {
+        let is_undrawn = |glyph: &&NotCompared| matches!(glyph.reason, NoPoints::NoModel | NoPoints::Stale);
+        let count = self.not_compared.iter().filter(is_undrawn).count();
+        (count > 0).then(|| format!("{} cannot be compared", glyph_count_text(count)))
     }
 
     /// The number of glyphs that cannot be compared for each reason.

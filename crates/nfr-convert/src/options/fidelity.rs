@@ -27,6 +27,15 @@ impl Fidelity {
         Self { error_per_bit: WORST * (BEST / WORST).powf(share) }
     }
 
+    /// The quality that stands for this, to a tenth.
+    pub fn quality(self) -> f64 {
+        if self.is_exact() {
+            return 100.0;
+        }
+        // From 0, so that the worst quality is no negative zero.
+        0.0 + (1000.0 * (self.error_per_bit / WORST).ln() / (BEST / WORST).ln()).round() / 10.0
+    }
+
     /// Whether every point is where hinting puts it, at every size: of outline models, at the sizes that the teacher draws. Fields,
     /// predicted sizes and glyphs without a model are not exact; [`FontPair::verify`](crate::compare::fonts::FontPair::verify) tells of
     /// them.

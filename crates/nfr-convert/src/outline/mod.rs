@@ -12,4 +12,4 @@ mod stored;
 pub(crate) use encode::{EncodedOutlines, encode};
 pub(crate) use fit::{FittedOutline, fit};
 pub(crate) use samples::OutlineSamples;
-pub(crate) use stored::stored_outline;
+pub(crate) use stored::{FontGlyph, stored_outline};

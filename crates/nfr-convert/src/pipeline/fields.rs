@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::glyphs::{GlyphTrainer, Stages};
-use crate::compare::metrics::Sums;
+use super::glyphs::{GlyphTrainer, Measured, Stages};
 use crate::compose::Decomposition;
 use crate::error::Error;
 use crate::partial::Partial;
@@ -16,10 +15,10 @@ pub(super) fn table(
     partial: Option<&Partial>,
     header: &Header,
     glyphs: &Decomposition,
-) -> Result<(Vec<u8>, BTreeMap<u16, Sums>), Error> {
+) -> Result<(Vec<u8>, BTreeMap<u16, Measured>), Error> {
     let trainer = GlyphTrainer { stages, partial };
     let trained = trainer.train_all(&glyphs.modelled)?;
-    let mut measured: BTreeMap<u16, Sums> = trained.iter().map(|t| (t.gid, t.sums)).collect();
+    let mut measured: BTreeMap<u16, Measured> = trained.iter().map(|t| (t.gid, t.measured.clone())).collect();
     let models: Vec<GlyphModel> =
         trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
     measured.extend(trainer.measure_composed(&models, &glyphs.composed)?);

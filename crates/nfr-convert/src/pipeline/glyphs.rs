@@ -19,6 +19,7 @@ use crate::writer::GlyphModel;
 use nfr::internals::Glyph;
 use nfr::internals::model::compose::{Composed, Origin};
 use nfr::internals::model::gridfit::{GridFit, Scale, Weights};
+use nfr::internals::table::Dropout;
 
 /// Glyphs that are trained together. The number is fixed, because the last digits of the result depend on it.
 const CHUNK: usize = 2;
@@ -27,8 +28,10 @@ const CHUNK: usize = 2;
 #[derive(Clone, Copy)]
 pub(super) struct Stages<'c> {
     pub(super) teacher: &'c Teacher,
-    /// The sizes that the teacher draws.
+    /// The sizes that are learnt.
     pub(super) sizes: &'c [TeacherAt],
+    /// The sizes between them, at which hinting is predicted.
+    pub(super) between: &'c [TeacherAt],
     /// The sizes of the models.
     pub(super) scale: Scale,
     /// Predicts the sizes of the models that the teacher does not draw.
@@ -48,15 +51,36 @@ impl Stages<'_> {
         Ok(samples)
     }
 
-    /// Draws the stored model and compares it with the teacher at the sizes that the teacher draws.
-    pub(super) fn measure(&self, samples: &GlyphSamples, glyph: &Glyph) -> Result<Sums, Error> {
-        let mut sums = Sums::default();
+    /// Draws the stored model and compares it with the teacher at all sizes of the models.
+    pub(super) fn measure(&self, samples: &GlyphSamples, glyph: &Glyph) -> Result<Measured, Error> {
+        let (mut learnt, mut dropout) = (Sums::default(), BTreeMap::new());
         for sample in samples.sizes.iter().filter(|size| !size.predicted) {
-            sums.add(&sample.bitmap, &glyph.render(f32::from(sample.ppem))?);
+            learnt.add(&sample.bitmap, &glyph.render(f32::from(sample.ppem))?);
+            dropout.insert(sample.ppem, sample.dropout);
         }
-        self.progress.glyph_done(samples.gid, sums.figures().mae);
-        Ok(sums)
+        let mut all = learnt;
+        for at in self.between {
+            let hinted = at.hinted(samples.gid)?;
+            all.add(&hinted.rasterize()?, &glyph.render(f32::from(at.ppem()))?);
+            dropout.insert(at.ppem(), hinted.dropout);
+        }
+        if samples.outline.points.is_empty() {
+            dropout.clear();
+        }
+        self.progress.glyph_done(samples.gid, learnt.figures().mae);
+        Ok(Measured { learnt, all, dropout })
     }
+}
+
+/// The errors of a glyph against the teacher.
+#[derive(Debug, Clone)]
+pub(super) struct Measured {
+    /// At the sizes that were learnt.
+    pub(super) learnt: Sums,
+    /// At all sizes of the models.
+    pub(super) all: Sums,
+    /// What the hints ask of a renderer in black and white, by size; empty for a blank glyph.
+    pub(super) dropout: BTreeMap<u16, Dropout>,
 }
 
 /// Trains and measures the fields of one conversion.
@@ -70,7 +94,7 @@ pub(super) struct GlyphTrainer<'c> {
 pub(super) struct TrainedGlyph {
     pub(super) gid: u16,
     pub(super) weights: Weights,
-    pub(super) sums: Sums,
+    pub(super) measured: Measured,
 }
 
 impl GlyphTrainer<'_> {
@@ -115,7 +139,7 @@ impl GlyphTrainer<'_> {
         let measured = glyphs.iter().zip(weights).map(|(samples, weights)| {
             let model = Arc::new(GridFit::new(&weights, self.stages.scale)?);
             let glyph = Glyph::of_models(vec![(model, Origin::default())]);
-            Ok(TrainedGlyph { gid: samples.gid, weights, sums: self.stages.measure(samples, &glyph)? })
+            Ok(TrainedGlyph { gid: samples.gid, weights, measured: self.stages.measure(samples, &glyph)? })
         });
         measured.collect()
     }
@@ -146,7 +170,7 @@ impl GlyphTrainer<'_> {
         &self,
         models: &[GlyphModel],
         composed: &[Composed],
-    ) -> Result<Vec<(u16, Sums)>, Error> {
+    ) -> Result<Vec<(u16, Measured)>, Error> {
         let parts: BTreeSet<u16> = composed.iter().flat_map(|glyph| &glyph.parts).map(|p| p.gid).collect();
         let parts = models
             .iter()

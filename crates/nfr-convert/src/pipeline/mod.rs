@@ -1,5 +1,7 @@
 //! The whole conversion: from a hinted font file to one with models.
 
+mod certificate;
+mod dropout;
 mod fields;
 mod glyphs;
 mod outlines;
@@ -21,7 +23,10 @@ use crate::options::{CELL_UNITS_PER_EM, Options};
 use crate::partial::Partial;
 use crate::predict::Predictor;
 use crate::teacher::{Teacher, TeacherAt};
-use glyphs::Stages;
+use certificate::certify;
+use dropout::add_dropout;
+use glyphs::{Measured, Stages};
+use nfr::Target;
 use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
 use outlines::Learned;
@@ -70,7 +75,10 @@ pub fn resume(
     let known_ppem = options.ppem.clone().step_by(options.ppem_step.into());
     let sizes = known_ppem.map(|ppem| teacher.at(ppem)).collect::<Result<Vec<_>, _>>()?;
     warn_of_unhinted(&sizes, progress)?;
-    let (gids, unreadable) = readable(&sizes, options, progress)?;
+    let is_between = |ppem: &u16| !(ppem - header.first_ppem).is_multiple_of(options.ppem_step);
+    let between = (header.first_ppem..=header.last_ppem).filter(is_between).map(|ppem| teacher.at(ppem));
+    let between = between.collect::<Result<Vec<_>, _>>()?;
+    let (gids, unreadable) = readable(&[&sizes, &between], options, progress)?;
     let options = &Options { gids, ..options.clone() };
     let mut glyphs = if options.compose {
         let exact = options.uses_outlines() && options.fidelity.is_exact();
@@ -81,9 +89,16 @@ pub fn resume(
     progress.planned(glyphs.modelled.len() + glyphs.composed.len());
     let predictor = Predictor::new(&teacher, &sizes, scale, &glyphs.modelled)?;
     glyphs.predict_part_offsets(&predictor, scale);
-    let conversion =
-        Stages { teacher: &teacher, sizes: &sizes, scale, predictor: &predictor, options, progress };
-    let (table, measured, mut left_out) = if options.uses_outlines() {
+    let conversion = Stages {
+        teacher: &teacher,
+        sizes: &sizes,
+        between: &between,
+        scale,
+        predictor: &predictor,
+        options,
+        progress,
+    };
+    let (mut table, measured, mut left_out) = if options.uses_outlines() {
         let Learned { table, measured, left_out } =
             outlines::learn(conversion, &font, partial, &header, &glyphs)?;
         (table, measured, left_out)
@@ -99,7 +114,11 @@ pub fn resume(
     }
     let mut sums = Sums::default();
     for gid in options.gids.iter().filter(|gid| left_out.binary_search(gid).is_err()) {
-        sums.merge(measured.get(gid).ok_or(Error::MissingGlyph(*gid))?);
+        sums.merge(&measured.get(gid).ok_or(Error::MissingGlyph(*gid))?.learnt);
+    }
+    certify(&font, &mut table, &measured, options)?;
+    if options.target == Target::Mono {
+        add_dropout(&mut table, &measured);
     }
     left_out.extend(unreadable);
     left_out.sort_unstable();
@@ -114,9 +133,9 @@ pub fn resume(
     })
 }
 
-fn reports(table: &Table<'_>, measured: &BTreeMap<u16, Sums>) -> Result<Vec<GlyphReport>, Error> {
-    let report = |(&gid, sums): (&u16, &Sums)| {
-        let (figures, composed) = (sums.figures(), table.is_composed(gid.into()));
+fn reports(table: &Table<'_>, measured: &BTreeMap<u16, Measured>) -> Result<Vec<GlyphReport>, Error> {
+    let report = |(&gid, measured): (&u16, &Measured)| {
+        let (figures, composed) = (measured.learnt.figures(), table.is_composed(gid.into()));
         let bytes = table.model_len(gid.into())?;
         Ok(GlyphReport { gid, bytes, composed, mae: figures.mae, bad16: figures.bad16 })
     };

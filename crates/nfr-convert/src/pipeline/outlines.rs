@@ -3,18 +3,19 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use read_fonts::{FontRef, TableProvider};
+use read_fonts::FontRef;
 use skrifa::font::Font;
 
-use super::glyphs::{GlyphTrainer, Stages};
+use super::glyphs::{GlyphTrainer, Measured, Stages};
 use super::training;
-use crate::compare::metrics::Sums;
 use crate::compare::report::glyph_count_text;
 use crate::compose::Decomposition;
 use crate::error::Error;
 use crate::input::open::owned;
 use crate::options::{Options, Shape};
-use crate::outline::{EncodedOutlines, FittedOutline, OutlineSamples, encode, fit, stored_outline};
+use crate::outline::{
+    EncodedOutlines, FittedOutline, FontGlyph, OutlineSamples, encode, fit, stored_outline,
+};
 use crate::parallel;
 use crate::partial::Partial;
 use crate::writer::{GlyphModel, OutlineTable, write_outlines};
@@ -23,7 +24,7 @@ use nfr::internals::model::gridfit::Scale;
 use nfr::internals::model::outline::OutlineModel;
 use nfr::internals::table::Header;
 use nfr::internals::table::outline::{Advances, scale_at};
-use nfr::internals::{Glyph, components, mul_fixed};
+use nfr::internals::{Glyph, mul_fixed};
 
 /// The most glyphs that one message lists.
 const GLYPHS_LISTED: usize = 5;
@@ -32,7 +33,7 @@ const GLYPHS_LISTED: usize = 5;
 pub(super) struct Learned {
     pub(super) table: Vec<u8>,
     /// The error of each glyph.
-    pub(super) measured: BTreeMap<u16, Sums>,
+    pub(super) measured: BTreeMap<u16, Measured>,
     /// The selected glyphs that have no model.
     pub(super) left_out: Vec<u16>,
 }
@@ -45,7 +46,8 @@ pub(super) fn learn(
     header: &Header,
     glyphs: &Decomposition,
 ) -> Result<Learned, Error> {
-    let found = find(&stages, &owned(font)?, glyphs)?;
+    let copy = owned(font)?;
+    let found = find(&stages, &copy, glyphs)?;
     let mut measured = measure(&stages, &found)?;
     let selected = |gid: &u16| stages.options.gids.binary_search(gid).is_ok();
     let unfit: Vec<u16> = found.unfit.into_iter().filter(selected).collect();
@@ -53,14 +55,13 @@ pub(super) fn learn(
     warn_of_unfit(&stages, &unfit, has_fields);
     let (fields, left_out) = if has_fields { (unfit, Vec::new()) } else { (Vec::new(), unfit) };
     let trained = GlyphTrainer { stages, partial }.train_all(&fields)?;
-    measured.extend(trained.iter().map(|t| (t.gid, t.sums)));
+    measured.extend(trained.iter().map(|t| (t.gid, t.measured.clone())));
     let fields: Vec<GlyphModel> =
         trained.into_iter().map(|t| GlyphModel { gid: t.gid, weights: t.weights }).collect();
-    let (loca, glyf) = (font.loca(None), font.glyf());
-    let known_parts = |gid: u16| components(loca.as_ref().ok()?, glyf.as_ref().ok()?, gid.into());
+    let in_font = |gid: u16| FontGlyph::read(font, &copy, gid);
     let (gids, encoded, composed) = (&found.gids, &found.encoded, &found.composed);
     let table = OutlineTable { gids, encoded, composed, fields: &fields, scale: stages.scale };
-    Ok(Learned { table: write_outlines(header, &table, known_parts)?, measured, left_out })
+    Ok(Learned { table: write_outlines(header, &table, in_font)?, measured, left_out })
 }
 
 /// The outline models of a font.
@@ -106,7 +107,7 @@ fn find(stages: &Stages<'_>, font: &Font, glyphs: &Decomposition) -> Result<Foun
 }
 
 /// Draws all glyphs that have outline models, and compares them with the teacher.
-fn measure(stages: &Stages<'_>, found: &Found) -> Result<BTreeMap<u16, Sums>, Error> {
+fn measure(stages: &Stages<'_>, found: &Found) -> Result<BTreeMap<u16, Measured>, Error> {
     let own = found.models.iter().map(|(gid, model)| Ok((*gid, vec![(model.clone(), Part::default())])));
     let placed = found.composed.iter().map(|(glyph, _)| {
         let parts = glyph.parts.iter().map(|part| {

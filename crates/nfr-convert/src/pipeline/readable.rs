@@ -17,16 +17,15 @@ const GLYPHS_LISTED: usize = 3;
 ///
 /// That of the first glyph, if none can be drawn; `NoSuchGlyph` for a glyph that the font does not have.
 pub(super) fn readable(
-    sizes: &[TeacherAt],
+    sizes: &[&[TeacherAt]],
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<(Vec<u16>, Vec<u16>), Error> {
     let checked = parallel::map(&options.gids, options.jobs, |gid| {
         // A font may find a panic in what reads it.
         let drawn = catch_unwind(AssertUnwindSafe(|| {
-            sizes
-                .iter()
-                .try_for_each(|at| at.hinted(*gid).and_then(|outline| outline.rasterize()).map(|_| ()))
+            let mut sizes = sizes.iter().copied().flatten();
+            sizes.try_for_each(|at| at.hinted(*gid).and_then(|outline| outline.rasterize()).map(|_| ()))
         }));
         match drawn {
             Ok(Ok(())) => Ok(None),

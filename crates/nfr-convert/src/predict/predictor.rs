@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::teacher::{Teacher, TeacherAt};
 use crate::training_samples::{GlyphSamples, TrainingSample};
 use nfr::internals::model::gridfit::Scale;
+use nfr::internals::table::Dropout;
 
 /// Predicts the sizes of a scale that are not known.
 pub(crate) struct Predictor {
@@ -71,6 +72,7 @@ impl Predictor {
                 ppem: wanted.ppem,
                 points,
                 advance: None,
+                dropout: Dropout::default(),
                 bitmap,
                 predicted: true,
             });

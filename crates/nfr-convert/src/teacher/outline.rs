@@ -7,6 +7,7 @@ use zeno::{Command, Mask, Origin, PathBuilder, Vector};
 
 use crate::error::Error;
 use nfr::internals::model::gridfit::MAX_SIDE;
+use nfr::internals::table::Dropout;
 use nfr::{Bitmap, Placement};
 
 /// Line segments that approximate one quadratic curve: off by less than 1/2000 em on any glyph-sized arc.
@@ -25,6 +26,8 @@ pub struct Outline {
     pub points: Vec<[f32; 2]>,
     /// The advance width in the same unit, hinted if the points are.
     pub advance: Option<f32>,
+    /// What the hints ask of a renderer in black and white.
+    pub dropout: Dropout,
 }
 
 impl Outline {
@@ -64,7 +67,7 @@ impl Outline {
                 Command::Close => Command::Close,
             })
             .collect();
-        Ok(Self { commands, points: points.to_vec(), advance: self.advance })
+        Ok(Self { commands, points: points.to_vec(), ..self.clone() })
     }
 
     /// Whether another outline has the same contours but for its points' positions. A hint program can put a control point on the

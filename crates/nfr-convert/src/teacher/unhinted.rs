@@ -8,6 +8,7 @@ use skrifa::{DrawMemory, GlyphId, OutlineSource, ScaleError, ScalerFont, ScalerS
 use super::outline::Outline;
 use crate::error::Error;
 use crate::input::open::{owned, units_per_em};
+use nfr::internals::table::Dropout;
 
 /// The unhinted outlines of a font, of which this keeps a copy.
 pub(crate) struct UnhintedOutlines {
@@ -65,6 +66,10 @@ pub(crate) fn draw(scaler: &ScalerFont, gid: u16) -> Result<Outline, ScaleError>
         Some(glyph) => {
             let metrics = glyph.draw(DrawMemory::Scratch, &mut outline)?;
             outline.advance = metrics.h_advance;
+            let dropout = metrics.dropout_control;
+            if dropout.is_enabled() {
+                outline.dropout = Dropout::new(dropout.is_smart(), dropout.includes_stubs());
+            }
             Ok(outline)
         }
         // skrifa returns `None` for a damaged glyph, too.

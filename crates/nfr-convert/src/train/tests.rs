@@ -127,6 +127,7 @@ fn an_outline_without_height_is_trained_too() {
         let placement = Placement { left: 0, top: 3, width: 4, height: 1 };
         TrainingSample {
             advance: None,
+            dropout: Default::default(),
             ppem,
             points,
             bitmap: Bitmap { placement, pixels: vec![0, 0, 9, 0] },

@@ -8,7 +8,8 @@ use nfr::internals::model::compose::{Composed, Origin};
 use nfr::internals::model::gridfit::{Scale, Weights};
 use nfr::internals::table::composed::{COUNTS_AT, NO_GRID_OFFSETS};
 use nfr::internals::table::{
-    BLOCK, HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, MAX_PARTS, MINOR_VERSION,
+    BLOCK, CERTIFICATE, Certificate, CertifiedErrors, DROPOUT, Dropout, DropoutException, DropoutModes,
+    HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, MAX_PARTS, MINOR_VERSION,
     NETWORK_MINOR_VERSION, NETWORKS, OUTLINES_DROPPED, codec, part_offsets,
 };
 
@@ -74,6 +75,35 @@ pub fn write(
         put_networks(&mut out, &others, networks)?;
     }
     Ok((out, packed.iter().map(Vec::len).collect()))
+}
+
+/// The header of a table without fields and networks.
+pub(crate) fn write_header(header: &Header) -> Vec<u8> {
+    let mut out = Vec::with_capacity(HEADER_LEN);
+    put_header(&mut out, header, 0, 0);
+    out.resize(HEADER_LEN, 0);
+    out
+}
+
+/// The flags of a table.
+pub(crate) fn flags_mut(table: &mut [u8]) -> &mut u8 {
+    &mut table[FLAGS_AT]
+}
+
+/// Appends a certificate to a table, with the errors of all of its glyphs, in ascending order.
+pub(crate) fn write_certificate(
+    table: &mut Vec<u8>,
+    certificate: &Certificate<'_>,
+    errors: impl IntoIterator<Item = CertifiedErrors>,
+) {
+    table[FLAGS_AT] |= CERTIFICATE;
+    certificate.write(errors, table);
+}
+
+/// Appends the modes of drop-out control to a table that has its certificate already.
+pub(crate) fn write_dropout(table: &mut Vec<u8>, ranges: &[(u16, Dropout)], exceptions: &[DropoutException]) {
+    table[FLAGS_AT] |= DROPOUT;
+    DropoutModes::write(ranges, exceptions, table);
 }
 
 fn pack(model: &GlyphModel, scale: Scale) -> Result<Vec<u8>, Error> {

@@ -4,14 +4,12 @@ use std::collections::{BTreeMap, HashMap};
 
 use nfr::internals::model::compose::{Composed, Part};
 use nfr::internals::model::gridfit::Scale;
-use nfr::internals::table::outline::{
-    Advances, StoredGlyph, StoredPart, encode_list, encode_parts, pack, plain_parts,
-};
-use nfr::internals::table::{HEADER_LEN, Header, OUTLINE_MODELS};
+use nfr::internals::table::outline::{Advances, StoredGlyph, StoredPart, encode_list, pack};
+use nfr::internals::table::{Header, OUTLINE_MODELS};
 
-use super::{FLAGS_AT, GlyphModel, put_header, write};
+use super::{GlyphModel, flags_mut, write, write_header};
 use crate::error::Error;
-use crate::outline::EncodedOutlines;
+use crate::outline::{EncodedOutlines, FontGlyph};
 
 /// The outline models of a font, and the fields of glyphs that cannot have one.
 pub(crate) struct OutlineTable<'t> {
@@ -27,11 +25,11 @@ pub(crate) struct OutlineTable<'t> {
     pub(crate) scale: Scale,
 }
 
-/// Writes a table of outline models and fields. `known` gives the parts of a composite glyph of `glyf`.
+/// Writes a table of outline models and fields. `in_font` gives what the font has for a composed glyph.
 pub(crate) fn write_outlines(
     header: &Header,
     table: &OutlineTable<'_>,
-    known: impl Fn(u16) -> Option<Vec<Part>>,
+    in_font: impl Fn(u16) -> FontGlyph,
 ) -> Result<Vec<u8>, Error> {
     let lists = GridOffsetLists::of(table.composed);
     let mut glyphs: BTreeMap<u16, Vec<u8>> =
@@ -39,18 +37,14 @@ pub(crate) fn write_outlines(
     for (glyph, advances) in table.composed {
         let parts = glyph.parts.iter().map(|part| lists.stored(part)).collect();
         let stored = StoredGlyph { parts, advances: advances.clone() };
-        let known = known(glyph.gid).map(|parts| plain_parts(&parts));
-        glyphs.insert(glyph.gid, encode_parts(&stored, known.as_deref())?);
+        glyphs.insert(glyph.gid, in_font(glyph.gid).encode(&stored)?);
     }
     let mut out = if table.fields.is_empty() {
-        let mut out = Vec::with_capacity(HEADER_LEN);
-        put_header(&mut out, header, 0, 0);
-        out.resize(HEADER_LEN, 0);
-        out
+        write_header(header)
     } else {
         write(header, table.fields, &[], &[], table.scale)?.0
     };
-    out[FLAGS_AT] |= OUTLINE_MODELS;
+    *flags_mut(&mut out) |= OUTLINE_MODELS;
     let messages = Messages { glyphs, shared: table.encoded.shared.clone(), lists: lists.messages };
     messages.write(&mut out)?;
     Ok(out)

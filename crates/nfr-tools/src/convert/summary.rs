@@ -13,6 +13,8 @@ use nfr_convert::{Conversion, GlyphReport};
 pub(super) struct About {
     pub(super) input: String,
     pub(super) output: String,
+    /// The neural font that the models were added to.
+    pub(super) into: Option<String>,
     pub(super) target: &'static str,
     pub(super) ppem: String,
     pub(super) seed: u64,
@@ -109,7 +111,8 @@ pub(super) fn print_summary(report: &ReportFile<'_>, added: usize) -> Result<(),
         count => format!(", {count} of them put together from others"),
     };
     let count = glyph_count_text(report.glyphs.len());
-    writeln!(out, "{}: {count} at {} ppem{composed}{added}", report.about.output, report.about.ppem)?;
+    let into = report.about.into.as_ref().map_or(String::new(), |path| format!(" beside those of {path}"));
+    writeln!(out, "{}: {count}{into} at {} ppem{composed}{added}", report.about.output, report.about.ppem)?;
     writeln!(out, "table   {} bytes, {:.1} per glyph", report.table_bytes, report.bytes_per_glyph)?;
     let hints = &report.hint_bytes;
     writeln!(

@@ -14,8 +14,8 @@ fn outline(contours: u16) -> OutlinePoints {
 
 /// How many of some changed outlines have the hash of the one that was changed.
 fn unnoticed(changed: &[OutlinePoints]) -> usize {
-    let hash = outline(3).hash();
-    changed.iter().filter(|outline| outline.hash() == hash).count()
+    let hash = outline(3).hash(600);
+    changed.iter().filter(|outline| outline.hash(600) == hash).count()
 }
 
 fn changed(change: impl FnOnce(&mut OutlinePoints)) -> OutlinePoints {
@@ -27,17 +27,18 @@ fn changed(change: impl FnOnce(&mut OutlinePoints)) -> OutlinePoints {
 
 #[test]
 fn the_hash_is_the_one_that_tables_have() {
-    // FNV-1a's offset basis, 0x811C9DC5, folded.
-    assert_eq!(OutlinePoints::default().hash(), 0x811C ^ 0x9DC5);
+    // FNV-1a's offset basis, 0x811C9DC5, and an advance width of 0, folded.
+    let empty = 0x811C_9DC5u32.wrapping_mul(16_777_619);
+    assert_eq!(u32::from(OutlinePoints::default().hash(0)), empty & 0xFFFF ^ empty >> 16);
     let point = OutlinePoints {
         coordinates: [vec![1], vec![-2]],
         on_curve: vec![true],
         ends: vec![1],
         is_unfit: false,
     };
-    let hash =
-        [1u32, 0xFFFE, 1, 1].iter().fold(0x811C_9DC5u32, |hash, v| (hash ^ v).wrapping_mul(16_777_619));
-    assert_eq!(u32::from(point.hash()), hash & 0xFFFF ^ hash >> 16);
+    let numbers = [1u32, 0xFFFE, 1, 1, 600];
+    let hash = numbers.iter().fold(0x811C_9DC5u32, |hash, v| (hash ^ v).wrapping_mul(16_777_619));
+    assert_eq!(u32::from(point.hash(600)), hash & 0xFFFF ^ hash >> 16);
 }
 
 #[test]
@@ -58,6 +59,8 @@ fn any_other_coordinate_flag_or_end_of_a_contour_is_another_hash() {
         }
     }
     assert_eq!(unnoticed(&all), 0, "of {} changes", all.len());
+    let hash = outline(3).hash(600);
+    assert!((0..2048).all(|advance| advance == 600 || outline(3).hash(advance) != hash), "an advance width");
 }
 
 #[test]
@@ -87,7 +90,7 @@ fn one_in_65536_changes_goes_unnoticed() {
         for value in (i16::MIN..i16::MAX).step_by(16) {
             points.coordinates[1][at] = value;
             tried += usize::from(points != base);
-            same += usize::from(points != base && points.hash() == base.hash());
+            same += usize::from(points != base && points.hash(600) == base.hash(600));
         }
         points.clone_from(&base);
     }
