@@ -19,6 +19,9 @@ pub use parameters::Parameters;
 
 /// The fewest and the most cells of a field along an axis that are chosen; the format allows more.
 const CELLS: [f32; 2] = [6.0, 40.0];
+/// A point farther from its unhinted position (pixels) has been moved: scaled points are rounded to 1/64 pixel, and implied ones lie
+/// between two of them.
+const MOVED: f32 = 1.0 / 16.0;
 
 /// Fits a model to a glyph's training samples. `seed` and the glyph's number determine the noise in its patterns.
 pub fn initial_fit(
@@ -51,13 +54,22 @@ pub fn initial_fit(
         field: fit_field(samples, grid),
         ..Parameters::default()
     };
-    for axis in if target == Target::Smooth { 1..2 } else { 0..2 } {
+    for axis in if target == Target::Smooth && !moves_in_x(samples) { 1..2 } else { 0..2 } {
         let fitted = fit_warp(samples, axis, units, capacity);
         parameters.knots[axis] = fitted.knots.iter().map(|k| (k * units).round() as i16).collect();
         parameters.hinted[axis] = fitted.hinted.concat();
     }
     fit_deformation(&mut parameters, samples, grid, units, capacity, seed ^ u64::from(samples.gid));
     parameters
+}
+
+/// Whether hinting moves a point in x. For the smooth target it does so in fonts that leave the interpreter's backward compatibility
+/// mode (OpenType 1.9, "INSTCTRL", selector 3).
+fn moves_in_x(samples: &GlyphSamples) -> bool {
+    samples.sizes.iter().any(|size| {
+        let plain = samples.outline.points.iter().map(|p| p[0] * f32::from(size.ppem));
+        size.points.iter().zip(plain).any(|(hinted, plain)| (hinted[0] - plain).abs() > MOVED)
+    })
 }
 
 /// Spline coefficients: the signed distance to the outline at their centres.

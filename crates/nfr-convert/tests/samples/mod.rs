@@ -84,17 +84,21 @@ pub(crate) fn with_changed_outline(data: &[u8], gid: u16) -> Vec<u8> {
 /// The font with another program of a simple glyph, which takes its points from `low` to `high` off the curve at sizes below
 /// `ppem`, and hints nothing.
 pub(crate) fn with_flipped_points(data: &[u8], gid: u16, [low, high, ppem]: [u8; 3]) -> Vec<u8> {
-    // OpenType 1.9, "TrueType instruction set": if MPPEM < ppem, FLIPRGOFF low high. It becomes as long as the one before with
-    // SVTCA[y], which moves nothing.
-    let program = [0x4B, 0xB0, ppem, 0x50, 0x58, 0xB1, low, high, 0x82, 0x59];
+    // OpenType 1.9, "TrueType instruction set": if MPPEM < ppem, FLIPRGOFF low high.
+    with_program(data, gid, &[0x4B, 0xB0, ppem, 0x50, 0x58, 0xB1, low, high, 0x82, 0x59])
+}
+
+/// The font with another program of a simple glyph, which must not be longer than the one before. It becomes as long with SVTCA[y],
+/// which moves nothing.
+pub(crate) fn with_program(data: &[u8], gid: u16, program: &[u8]) -> Vec<u8> {
     let mut glyf = table(data, b"glyf");
     let start = FontRef::new(data).unwrap().loca(None).unwrap().get_raw(gid.into()).unwrap() as usize;
     let word = |at: usize| usize::from(u16::from_be_bytes([glyf[start + at], glyf[start + at + 1]]));
     // The box, where contours end, the length of the program (OpenType 1.9, "glyf").
     let length_at = 10 + 2 * word(0);
     let (from, length) = (start + length_at + 2, word(length_at));
-    glyf[from..from + length].fill(0);
-    glyf[from..from + program.len()].copy_from_slice(&program);
     assert!(program.len() <= length, "the program of glyph {gid} is too short");
+    glyf[from..from + length].fill(0);
+    glyf[from..from + program.len()].copy_from_slice(program);
     with_tables(data, &[(b"glyf", glyf)])
 }

@@ -1,0 +1,82 @@
+//! Hints that move points sideways in smooth text.
+#![allow(clippy::unwrap_used)]
+
+mod samples;
+
+use nfr::{Font, Rasterizer};
+use nfr_convert::compare::fonts::FontPair;
+use nfr_convert::compare::metrics::Sums;
+use nfr_convert::teacher::Teacher;
+use nfr_convert::{Options, Quality, Shape, convert};
+use read_fonts::FontRef;
+use samples::{FONTS, Silent, font, gid, gids, with_program, with_tables};
+
+/// OpenType 1.9, "TrueType instruction set": PUSHB[1] 4 3, INSTCTRL leaves backward compatibility mode, in which smooth hinting does
+/// not move points in x.
+const NATIVE_CLEARTYPE: [u8; 4] = [0xB1, 4, 3, 0x8E];
+
+/// SVTCA[x], NPUSHB, and MDAP[1] for each of the first points: rounds them to whole pixels in x.
+fn rounding_in_x(points: u8) -> Vec<u8> {
+    let numbers = (0..points).collect();
+    [vec![0x01, 0x40, points], numbers, vec![0x2F; points.into()]].concat()
+}
+
+/// Liberation Sans with native ClearType, set by `prep` or by each program, whose 'H' and 'l' are rounded in x.
+fn native(by_prep: bool) -> Vec<u8> {
+    let mut data = font(FONTS[0]);
+    for (character, points) in [('H', 12), ('l', 4)] {
+        let start = if by_prep { &[][..] } else { &NATIVE_CLEARTYPE };
+        let program = [start, &rounding_in_x(points)].concat();
+        data = with_program(&data, gid(&data, character), &program);
+    }
+    if by_prep { with_tables(&data, &[(b"prep", NATIVE_CLEARTYPE.to_vec())]) } else { data }
+}
+
+fn options(data: &[u8], text: &str, shape: Shape, quality: f32) -> Options {
+    let quality = Quality::new(quality).unwrap();
+    let mut options =
+        Options { gids: gids(data, text), ppem: 8..=20, shape, ..Options::default().with_quality(quality) };
+    options.schedule.steps = 0;
+    options.refinement.rounds = 0;
+    options
+}
+
+/// The errors of the drawn glyphs and of the unhinted outlines against the teacher, at some sizes.
+fn errors(data: &[u8], font: &[u8], text: &str, sizes: &[u16]) -> [f64; 2] {
+    let font = Font::new(font.to_vec()).unwrap();
+    let teacher = Teacher::new(&FontRef::new(data).unwrap(), font.target()).unwrap();
+    let mut rasterizer = Rasterizer::new(&font);
+    let [mut drawn, mut unhinted] = [Sums::default(); 2];
+    for (gid, ppem) in gids(data, text).into_iter().flat_map(|gid| sizes.iter().map(move |s| (gid, *s))) {
+        let truth = teacher.at(ppem).unwrap().hinted(gid).unwrap().rasterize().unwrap();
+        drawn.add(&truth, &rasterizer.render(gid.into(), f32::from(ppem)).unwrap());
+        unhinted.add(&truth, &teacher.unhinted(gid, ppem.into()).unwrap().rasterize().unwrap());
+    }
+    [drawn.mae(), unhinted.mae()]
+}
+
+#[test]
+fn smooth_hints_that_move_points_in_x_are_learned_by_outline_models() {
+    for data in [native(true), native(false)] {
+        let conversion = convert(&data, &options(&data, "Hl", Shape::Outline, 100.0), &Silent).unwrap();
+        let pair = FontPair::open(&data, 0, &conversion.font).unwrap();
+        let found = pair.verify(["", ""], &gids(&data, "Hl"), &(8..=20).into(), 1).unwrap();
+        assert!(found.failures(0).is_empty(), "{found}");
+        let [drawn, unhinted] = errors(&data, &conversion.font, "Hl", &[8, 11, 16, 20]);
+        assert!(drawn == 0.0 && unhinted > 0.02, "{drawn} {unhinted}");
+        // Beyond the learned sizes the unhinted outline is drawn, as for all fonts.
+        let [drawn, unhinted] = errors(&data, &conversion.font, "Hl", &[7, 21, 64]);
+        assert!(drawn > 0.0 && drawn == unhinted, "{drawn} {unhinted}");
+        let conversion = convert(&data, &options(&data, "Hl", Shape::Outline, 50.0), &Silent).unwrap();
+        let [drawn, _] = errors(&data, &conversion.font, "Hl", &[8, 11, 16, 20]);
+        assert!(drawn < 0.001, "{drawn}");
+    }
+}
+
+#[test]
+fn smooth_hints_that_move_points_in_x_are_learned_by_fields() {
+    let data = native(true);
+    let conversion = convert(&data, &options(&data, "Hl", Shape::Field, 50.0), &Silent).unwrap();
+    let [drawn, unhinted] = errors(&data, &conversion.font, "Hl", &[8, 11, 16, 20]);
+    assert!(drawn < 0.25 * unhinted, "{drawn} of {unhinted}");
+}
