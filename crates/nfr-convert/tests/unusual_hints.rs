@@ -1,13 +1,15 @@
-//! Hints that move points sideways in smooth text.
+//! Hints that move points sideways in smooth text, and hints without which a glyph looks different.
 #![allow(clippy::unwrap_used)]
 
 mod samples;
 
-use nfr::{Font, Rasterizer};
+use std::sync::Mutex;
+
+use nfr::{Font, Rasterizer, Target};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Options, Quality, Shape, convert};
+use nfr_convert::{Error, Options, Progress, Quality, Shape, convert};
 use read_fonts::FontRef;
 use samples::{FONTS, Silent, font, gid, gids, with_program, with_tables};
 
@@ -15,10 +17,29 @@ use samples::{FONTS, Silent, font, gid, gids, with_program, with_tables};
 /// not move points in x.
 const NATIVE_CLEARTYPE: [u8; 4] = [0xB1, 4, 3, 0x8E];
 
+/// Remembers warnings.
+#[derive(Default)]
+struct Warnings(Mutex<Vec<String>>);
+
+impl Progress for Warnings {
+    fn glyph_done(&self, _: u16, _: f64) {}
+    fn warn(&self, message: &str) {
+        self.0.lock().unwrap().push(message.to_owned());
+    }
+}
+
 /// SVTCA[x], NPUSHB, and MDAP[1] for each of the first points: rounds them to whole pixels in x.
 fn rounding_in_x(points: u8) -> Vec<u8> {
     let numbers = (0..points).collect();
     [vec![0x01, 0x40, points], numbers, vec![0x2F; points.into()]].concat()
+}
+
+/// Moves the dot of an 'i', its points 0 to 3, by 0.4 em along an axis: SVTCA; MDAP[0] of each; SLOOP 4; SHPIX by the size in pixels
+/// (MPPEM) times 1638/64 of 1/64 pixel.
+fn moving_the_dot(axis: u8) -> Vec<u8> {
+    let touch = [&[0xB3, 0, 1, 2, 3][..], &[0x2E; 4]].concat();
+    let shift = [0xB0, 4, 0x17, 0xB3, 0, 1, 2, 3, 0xB8, 0x06, 0x66, 0x4B, 0x63, 0x38];
+    [&[1 - axis][..], &touch, &shift].concat()
 }
 
 /// Liberation Sans with native ClearType, set by `prep` or by each program, whose 'H' and 'l' are rounded in x.
@@ -79,4 +100,37 @@ fn smooth_hints_that_move_points_in_x_are_learned_by_fields() {
     let conversion = convert(&data, &options(&data, "Hl", Shape::Field, 50.0), &Silent).unwrap();
     let [drawn, unhinted] = errors(&data, &conversion.font, "Hl", &[8, 11, 16, 20]);
     assert!(drawn < 0.25 * unhinted, "{drawn} of {unhinted}");
+}
+
+#[test]
+fn a_glyph_that_its_program_puts_together_is_learned_and_told() {
+    let sans = font(FONTS[0]);
+    for (target, axis) in [(Target::Smooth, 1), (Target::Mono, 0), (Target::Mono, 1)] {
+        let data = with_program(&sans, gid(&sans, 'i'), &moving_the_dot(axis));
+        for (quality, most) in [(50.0, 0.002), (100.0, 0.0)] {
+            let options = Options { target, ..options(&data, "Hil", Shape::Outline, quality) };
+            let warnings = Warnings::default();
+            let conversion = convert(&data, &options, &warnings).unwrap();
+            let warnings = warnings.0.into_inner().unwrap();
+            assert_eq!(warnings.len(), 1, "{warnings:?}");
+            for part in [format!("1 glyph ({})", gid(&data, 'i')), "outside of 8–20 ppem".into()] {
+                assert!(warnings[0].contains(&part), "{part:?} is not in {warnings:?}");
+            }
+            let [drawn, unhinted] = errors(&data, &conversion.font, "i", &[8, 11, 16, 20]);
+            assert!(drawn <= most && unhinted > 0.03, "{target} {axis} {quality}: {drawn} {unhinted}");
+            let [drawn, unhinted] = errors(&data, &conversion.font, "i", &[7, 21, 64]);
+            assert!(drawn == unhinted, "{drawn} {unhinted}");
+        }
+    }
+}
+
+#[test]
+fn a_font_whose_glyphs_are_known_to_be_put_together_by_programs_is_refused() {
+    // OpenType 1.9, "name": the family, in English for Windows.
+    let family: Vec<u8> = "MingLiU".encode_utf16().flat_map(u16::to_be_bytes).collect();
+    let record = [3, 1, 0x409, 1, family.len() as u16, 0];
+    let head = [0, 1, 18].into_iter().chain(record).flat_map(u16::to_be_bytes);
+    let data = with_tables(&font(FONTS[0]), &[(b"name", head.chain(family).collect())]);
+    let error = convert(&data, &options(&data, "H", Shape::Outline, 50.0), &Silent).err().unwrap();
+    assert!(matches!(&error, Error::Unsupported(text) if text.contains("tricky")), "{error}");
 }

@@ -1,5 +1,6 @@
 //! The whole conversion: from a hinted font file to one with models.
 
+mod assembled;
 mod certificate;
 mod dropout;
 mod fields;
@@ -7,6 +8,7 @@ mod glyphs;
 mod outlines;
 mod readable;
 mod training;
+mod warnings;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,6 +25,7 @@ use crate::options::{CELL_UNITS_PER_EM, Options};
 use crate::partial::Partial;
 use crate::predict::Predictor;
 use crate::teacher::{Teacher, TeacherAt};
+use assembled::warn_of_assembled;
 use certificate::certify;
 use dropout::add_dropout;
 use glyphs::{Measured, Stages};
@@ -80,6 +83,7 @@ pub fn resume(
     let between = between.collect::<Result<Vec<_>, _>>()?;
     let (gids, unreadable) = readable(&[&sizes, &between], options, progress)?;
     let options = &Options { gids, ..options.clone() };
+    warn_of_assembled(&teacher, options, progress)?;
     let mut glyphs = if options.compose {
         let exact = options.uses_outlines() && options.fidelity.is_exact();
         Decomposition::find(&font, &teacher, &sizes, scale, &options.gids, exact)?

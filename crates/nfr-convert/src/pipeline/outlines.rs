@@ -8,7 +8,7 @@ use skrifa::font::Font;
 
 use super::glyphs::{GlyphTrainer, Measured, Stages};
 use super::training;
-use crate::compare::report::glyph_count_text;
+use super::warnings::glyphs_text;
 use crate::compose::Decomposition;
 use crate::error::Error;
 use crate::input::open::owned;
@@ -25,9 +25,6 @@ use nfr::internals::model::outline::OutlineModel;
 use nfr::internals::table::Header;
 use nfr::internals::table::outline::{Advances, scale_at};
 use nfr::internals::{Glyph, mul_fixed};
-
-/// The most glyphs that one message lists.
-const GLYPHS_LISTED: usize = 5;
 
 /// A table of outline models.
 pub(super) struct Learned {
@@ -133,18 +130,14 @@ fn warn_of_unfit(stages: &Stages<'_>, unfit: &[u16], has_fields: bool) {
     if unfit.is_empty() {
         return;
     }
-    let listed: Vec<String> = unfit.iter().take(GLYPHS_LISTED).map(u16::to_string).collect();
-    let more = unfit.len().saturating_sub(GLYPHS_LISTED);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let count = glyph_count_text(unfit.len());
     let instead = if has_fields {
         "trained fields draw them".to_owned()
     } else {
         format!("they are left without a model; {}", training::ADVICE)
     };
     stages.progress.warn(&format!(
-        "hinting changes the contours of {count} ({}{more}), not only the positions of points; {instead}",
-        listed.join(", ")
+        "hinting changes the contours of {}, not only the positions of points; {instead}",
+        glyphs_text(unfit)
     ));
 }
 

@@ -8,7 +8,7 @@ pub(crate) mod unhinted;
 
 use std::sync::OnceLock;
 
-use read_fonts::tables::glyf::Glyph;
+use read_fonts::tables::glyf::{Glyph, is_hint_reliant};
 use read_fonts::{FontRef, TableProvider};
 use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, ScalerFont, ScalerSource};
 
@@ -31,8 +31,9 @@ impl Teacher {
     ///
     /// # Errors
     ///
-    /// `Unsupported` for a variable font, a font without TrueType outlines, or one without hint programs; `Malformed`
-    /// if its size of an em is not one that OpenType allows.
+    /// `Unsupported` for a variable font, a font without TrueType outlines, one without hint programs, or one that FreeType calls
+    /// tricky, whose outlines are only parts of glyphs before its programs put them together; `Malformed` if its size of an em is
+    /// not one that OpenType allows.
     pub fn new(font: &FontRef<'_>, target: Target) -> Result<Self, Error> {
         let unhinted = UnhintedOutlines::new(font)?;
         match unhinted.table() {
@@ -52,6 +53,13 @@ impl Teacher {
         if font.fvar().is_ok() {
             return Err(Error::Unsupported(
                 "the font is variable; make a static instance first (fonttools varLib.instancer)".into(),
+            ));
+        }
+        if is_hint_reliant(font) {
+            return Err(Error::Unsupported(
+                "the font's hint programs put its glyphs together from parts (FreeType calls such fonts tricky); without them, as \
+                 beyond the learned sizes, its outlines are no glyphs; keep the font as it is"
+                    .into(),
             ));
         }
         if !has_glyph_programs(font) {
