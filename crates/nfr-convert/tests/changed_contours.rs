@@ -44,7 +44,10 @@ fn options(data: &[u8], text: &str, shape: Shape) -> Options {
 fn converted(data: &[u8], options: &Options) -> (Conversion, Vec<String>) {
     let warnings = Warnings::default();
     let conversion = convert(data, options, &warnings).unwrap();
-    (conversion, warnings.0.into_inner().unwrap())
+    let mut warnings = warnings.0.into_inner().unwrap();
+    // That of fields, which have more error than the unhinted outlines before they are trained.
+    warnings.retain(|warning| !warning.contains("larger error"));
+    (conversion, warnings)
 }
 
 #[test]

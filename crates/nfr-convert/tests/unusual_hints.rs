@@ -97,9 +97,11 @@ fn smooth_hints_that_move_points_in_x_are_learned_by_outline_models() {
 #[test]
 fn smooth_hints_that_move_points_in_x_are_learned_by_fields() {
     let data = native(true);
-    let conversion = convert(&data, &options(&data, "Hl", Shape::Field, 50.0), &Silent).unwrap();
+    let warnings = Warnings::default();
+    let conversion = convert(&data, &options(&data, "Hl", Shape::Field, 50.0), &warnings).unwrap();
     let [drawn, unhinted] = errors(&data, &conversion.font, "Hl", &[8, 11, 16, 20]);
     assert!(drawn < 0.25 * unhinted, "{drawn} of {unhinted}");
+    assert_eq!(warnings.0.into_inner().unwrap(), [""; 0]);
 }
 
 #[test]
@@ -133,4 +135,23 @@ fn a_font_whose_glyphs_are_known_to_be_put_together_by_programs_is_refused() {
     let data = with_tables(&font(FONTS[0]), &[(b"name", head.chain(family).collect())]);
     let error = convert(&data, &options(&data, "H", Shape::Outline, 50.0), &Silent).err().unwrap();
     assert!(matches!(&error, Error::Unsupported(text) if text.contains("tricky")), "{error}");
+}
+
+#[test]
+fn glyphs_whose_models_have_more_error_than_their_outlines_are_told_in_one_line() {
+    let data = font(FONTS[0]);
+    let told = |options: &Options| {
+        let warnings = Warnings::default();
+        convert(&data, options, &warnings).unwrap();
+        warnings.0.into_inner().unwrap()
+    };
+    let mut options = options(&data, "@%l", Shape::Field, 50.0);
+    options.ppem = 40..=48;
+    options.capacity.cell = 0.5;
+    let warnings = told(&options);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    let named = format!("3 glyphs ({}, {}, {})", gid(&data, '%'), gid(&data, '@'), gid(&data, 'l'));
+    assert!(warnings[0].contains(&named) && warnings[0].contains("unhinted outlines"), "{warnings:?}");
+    options.shape = Shape::Outline;
+    assert_eq!(told(&options), [""; 0]);
 }

@@ -81,6 +81,11 @@ impl Sums {
         self.max
     }
 
+    /// The sum of absolute errors; a pixel that is off by full coverage adds 255.
+    pub fn absolute(&self) -> u64 {
+        self.absolute
+    }
+
     /// Mean absolute error, 0..1.
     pub fn mae(&self) -> f64 {
         self.share(self.absolute) / FULL

@@ -68,7 +68,24 @@ impl Stages<'_> {
             dropout.clear();
         }
         self.progress.glyph_done(samples.gid, learnt.figures().mae);
-        Ok(Measured { learnt, all, dropout })
+        let is_worse_than_unhinted = self.unhinted_is_nearer(samples, learnt);
+        Ok(Measured { learnt, all, dropout, is_worse_than_unhinted })
+    }
+
+    /// Whether the unhinted outline has a smaller error than `sums`. Large sizes come first: for nearly all glyphs the error of the
+    /// largest alone decides.
+    fn unhinted_is_nearer(&self, samples: &GlyphSamples, sums: Sums) -> bool {
+        let mut unhinted = Sums::default();
+        for sample in samples.sizes.iter().rev().filter(|size| !size.predicted) {
+            if unhinted.absolute() >= sums.absolute() {
+                return false;
+            }
+            let plain = self.teacher.unhinted(samples.gid, f32::from(sample.ppem));
+            // An outline that cannot be drawn is no better.
+            let Ok(plain) = plain.and_then(|outline| outline.rasterize()) else { return false };
+            unhinted.add(&sample.bitmap, &plain);
+        }
+        unhinted.absolute() < sums.absolute()
     }
 }
 
@@ -81,6 +98,8 @@ pub(super) struct Measured {
     pub(super) all: Sums,
     /// What the hints ask of a renderer in black and white, by size; empty for a blank glyph.
     pub(super) dropout: BTreeMap<u16, Dropout>,
+    /// Whether the glyph's unhinted outline is nearer to the teacher.
+    pub(super) is_worse_than_unhinted: bool,
 }
 
 /// Trains and measures the fields of one conversion.

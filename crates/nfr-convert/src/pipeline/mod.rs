@@ -34,6 +34,7 @@ use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
 use outlines::Learned;
 use readable::readable;
+use warnings::glyphs_text;
 
 /// Converts a font: finds or trains a model for each glyph and writes a font that carries them instead of hints.
 ///
@@ -124,6 +125,7 @@ pub fn resume(
     if options.target == Target::Mono {
         add_dropout(&mut table, &measured);
     }
+    warn_of_worse(&measured, progress);
     left_out.extend(unreadable);
     left_out.sort_unstable();
     let dropped = if options.drop_outlines { measured.keys().copied().collect() } else { BTreeSet::new() };
@@ -144,6 +146,18 @@ fn reports(table: &Table<'_>, measured: &BTreeMap<u16, Measured>) -> Result<Vec<
         Ok(GlyphReport { gid, bytes, composed, mae: figures.mae, bad16: figures.bad16 })
     };
     measured.iter().map(report).collect()
+}
+
+/// Warns of the glyphs whose models have a larger error than their unhinted outlines.
+fn warn_of_worse(measured: &BTreeMap<u16, Measured>, progress: &dyn Progress) {
+    let worse: Vec<u16> =
+        measured.iter().filter(|(_, m)| m.is_worse_than_unhinted).map(|(gid, _)| *gid).collect();
+    if !worse.is_empty() {
+        progress.warn(&format!(
+            "the models of {} have a larger error than the unhinted outlines",
+            glyphs_text(&worse)
+        ));
+    }
 }
 
 /// Warns of the sizes at which the font switches its hints off. A font that does so at all of them is refused.
