@@ -49,6 +49,21 @@ fn groups(map: &[(u32, u32)]) -> Vec<u8> {
     bytes
 }
 
+/// Format 14: the variants of characters, each with a glyph of its own or without one: selector, character, glyph.
+fn variants(map: &[(u32, u32, Option<u16>)]) -> Vec<u8> {
+    let be24 = |number: u32| number.to_be_bytes()[1..].to_vec();
+    let be32 = |number: usize| (number as u32).to_be_bytes().to_vec();
+    let (mut records, mut lists) = (Vec::new(), Vec::new());
+    for (selector, character, glyph) in map {
+        let at = 10 + 11 * map.len() + lists.len();
+        let [default, own] = if glyph.is_some() { [0, at] } else { [at, 0] };
+        records.extend([be24(*selector), be32(default), be32(own)].concat());
+        let glyph = glyph.map_or(vec![0], |glyph| glyph.to_be_bytes().to_vec());
+        lists.extend([be32(1), be24(*character), glyph].concat());
+    }
+    [be16(&[14]), be32(10 + records.len() + lists.len()), be32(map.len()), records, lists].concat()
+}
+
 /// The vectors' font with another character map.
 fn with_cmap(subtables: &[Subtable]) -> Font {
     let mut cmap = be16(&[0, subtables.len() as u16]);
@@ -97,4 +112,24 @@ fn characters_beyond_the_first_plane_are_found_beside_a_smaller_subtable() {
         assert_eq!((font.glyph_for_char('A'), font.glyph_for_char('\u{1f600}')), (Some(5), Some(6)));
         assert!(font.characters().eq([('A', 5), ('\u{1f600}', 6)]));
     }
+}
+
+#[test]
+fn variation_selectors_choose_the_glyphs_that_the_font_lists_for_them() {
+    let listed = variants(&[(0xfe00, 0x41, Some(7)), (0xfe0f, 0x41, None), (0xe_0100, 0x1f600, Some(8))]);
+    let font = with_cmap(&[(0, 5, listed), (3, 10, groups(&[(0x41, 5), (0x42, 9), (0x1f600, 6)]))]);
+    assert_eq!((font.glyph_for_char('A'), font.glyph_for_char('\u{fe00}')), (Some(5), None));
+    assert_eq!(font.glyph_for_variation('A', '\u{fe00}'), Some(7));
+    assert_eq!(font.glyph_for_variation('A', '\u{fe0f}'), Some(5), "the default variant");
+    assert_eq!(font.glyph_for_variation('\u{1f600}', '\u{e0100}'), Some(8));
+    assert_eq!(font.glyph_for_variation('B', '\u{fe00}'), None);
+    assert!(font.characters().eq([('A', 5), ('B', 9), ('\u{1f600}', 6)]));
+}
+
+#[test]
+fn a_range_of_characters_may_share_a_glyph() {
+    let mut shared = be16(&[13, 0]);
+    shared.extend([28, 0, 1, 0x41, 0x43, 5].into_iter().flat_map(u32::to_be_bytes));
+    let font = with_cmap(&[(3, 10, shared)]);
+    assert_eq!(['A', 'C', 'D'].map(|c| font.glyph_for_char(c)), [Some(5), Some(5), None]);
 }

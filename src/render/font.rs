@@ -128,6 +128,12 @@ impl Font {
         self.0.font.charmap().map_unicode(character).map(GlyphId::to_u32)
     }
 
+    /// The glyph of a character with a variation selector behind it, U+FE00–FE0F or U+E0100–E01EF (OpenType 1.9, "cmap", format 14).
+    /// `None` if the font does not list them: [`Font::glyph_for_char`] has the glyph then, and nothing is drawn for the selector.
+    pub fn glyph_for_variation(&self, character: char, selector: char) -> Option<u32> {
+        self.0.font.charmap().map_unicode_variant(character, selector).map(GlyphId::to_u32)
+    }
+
     /// The characters of the font's character map with their glyphs.
     pub fn characters(&self) -> impl Iterator<Item = (char, u32)> + '_ {
         let mappings = self.0.font.charmap().unicodes();

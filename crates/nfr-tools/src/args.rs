@@ -84,13 +84,13 @@ impl SelectionArgs {
         Ok(gids)
     }
 
-    /// The glyphs of what the selected characters compose to.
+    /// The glyphs that shapers put in the place of the selected characters before layout.
     ///
     /// # Errors
     ///
     /// A text file, or a font, that cannot be read.
-    pub fn compositions(&self, font: &FontRef<'_>) -> Result<Vec<u16>, Failure> {
-        Ok(self.selection()?.compositions(font)?)
+    pub fn shaped_glyphs(&self, font: &FontRef<'_>) -> Result<Vec<u16>, Failure> {
+        Ok(self.selection()?.shaped_glyphs(font)?)
     }
 
     /// Whether nothing is selected, which stands for everything.

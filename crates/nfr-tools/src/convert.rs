@@ -312,8 +312,8 @@ fn prepare(args: &Args, input: &[u8], subject: &Subject<'_>) -> Result<Prepared,
     let gids = if args.selection.is_empty() || args.no_closure {
         named.clone()
     } else {
-        let composed = args.selection.compositions(&font)?;
-        close(&font, &[named.clone(), composed].concat(), &args.layout_features)?
+        let shaped = args.selection.shaped_glyphs(&font)?;
+        close(&font, &[named.clone(), shaped].concat(), &args.layout_features)?
     };
     let gids = subject.existing.map_or_else(|| gids.clone(), |existing| existing.missing(&gids));
     let added = gids.iter().filter(|gid| named.binary_search(gid).is_err()).count();

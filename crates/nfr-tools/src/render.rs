@@ -71,9 +71,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let gids = args.selection.resolve(&file, modelled(&font)?, print_line)?;
     let source = Neural::new(&font, &gids)?;
     if let Some(path) = &args.png {
-        let glyph = |c| font.glyph_for_char(c).and_then(|glyph| u16::try_from(glyph).ok());
-        let text: Option<Vec<u16>> =
-            selection.text.is_some().then(|| selection.characters().filter_map(glyph).collect());
+        let text = selection.text.is_some().then(|| selection.text_glyphs(&file)).transpose()?;
         let labels = LabelFont::neural(&file, &font)?;
         draw_sheet(args, path, &labels, &font, &source, &gids, text.as_deref())?;
     }

@@ -379,3 +379,15 @@ fn models_are_added_to_a_font_that_has_some() {
     nfr_convert(&["--text", "x", "--into", SANS, SANS, &second]).fails_with(&["no 'Nfrt' table"]);
     assert_eq!(std::fs::read(&second).unwrap(), second_bytes);
 }
+
+fn a_variation_selector_that_the_font_lacks_draws_nothing_and_is_no_error() {
+    let directory = Directory::new();
+    let [output, sheet] = ["out.ttf", "sheet.png"].map(|name| directory.name(name));
+    let text = "A\u{fe0f}\u{200d}g";
+    let run = nfr_convert(&["--text", text, "--strict", "--ppem", "12", SANS, &output]).succeeds();
+    assert_eq!(run.stderr, "");
+    let arguments = ["render", &output, "--ppem", "12", "--strict", "--text"];
+    let run = nfr(&[&arguments[..], &[text, "--json", "--png", &sheet]].concat()).succeeds();
+    assert_eq!(run.stderr, "");
+    assert_eq!(run.stdout, nfr(&[&arguments[..], &["Ag", "--json"]].concat()).succeeds().stdout);
+}

@@ -28,12 +28,12 @@ pub fn sample_glyphs(
     gids: &[u16],
     default: &str,
 ) -> Result<Vec<u16>, Error> {
+    if selection.text.is_some() {
+        return selection.text_glyphs(font);
+    }
     let font = owned(font)?;
     let charmap = font.charmap();
     let lookup = |c: char| charmap.map_unicode(c).and_then(|gid| u16::try_from(gid.to_u32()).ok());
-    if selection.text.is_some() {
-        return Ok(selection.characters().filter_map(lookup).collect());
-    }
     let available: BTreeSet<u16> = gids.iter().copied().collect();
     let letters: Vec<(char, u16)> = default
         .chars()

@@ -6,13 +6,16 @@ mod shaping;
 use std::collections::{BTreeSet, HashMap};
 
 use read_fonts::{FontRef, ReadError, TableProvider};
+use skrifa::font::Font;
 use skrifa::font::name::GlyphNameSource;
 
 use super::open::owned;
 use crate::error::Error;
 
 pub use lists::{CodePoints, GlyphIds, GlyphNames};
-use shaping::{compositions, parts};
+use shaping::{
+    DOTTED_CIRCLE, always_split, compositions, is_ignorable, is_variation_selector, needs_letter, parts,
+};
 
 /// The most unknown glyph names that one message lists.
 const NAMES_LISTED: usize = 5;
@@ -52,7 +55,8 @@ impl Selection {
 
     /// The glyph numbers in `font`. An empty selection stands for `all`. In place of a character that the font does not have, what
     /// shapers put there is selected, as the letter and the accent for an accented letter. Where that is missing, too, the character
-    /// is listed, as long as something else is selected.
+    /// is listed, as long as something else is selected, and unless it is drawn as nothing, as joiners and variation selectors are.
+    /// A character of the text with a variation selector behind it stands for its variant (`cmap`, format 14).
     ///
     /// # Errors
     ///
@@ -91,20 +95,39 @@ impl Selection {
 
     /// Adds the glyphs of characters; gives the characters that the font does not have.
     fn add_characters(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<BTreeSet<u32>, Error> {
-        let font = owned(font)?;
-        let charmap = font.charmap();
-        let lookup = |code: u32| charmap.map_unicode(code).and_then(|gid| u16::try_from(gid.to_u32()).ok());
+        let map = Characters::of(font)?;
         let mut missing = BTreeSet::new();
-        for code in self.codes() {
-            let found = lookup(code).map(|gid| vec![gid]);
+        let listed = self.unicodes.0.iter().flat_map(Clone::clone).map(|code| (code, None));
+        for (code, selector) in self.text_sequences().chain(listed) {
+            let found = map.glyph(code, selector).map(|gid| vec![gid]);
             let parts =
-                || Some(parts(code, |part| lookup(part).is_some())?.into_iter().filter_map(lookup).collect());
+                || Some(map.parts(code)?.into_iter().filter_map(|part| map.glyph(part, None)).collect());
             match found.or_else(parts) {
                 Some(found) => gids.extend(found),
+                None if is_ignorable(code) => {}
                 None => missing.extend([code]),
             }
         }
         Ok(missing)
+    }
+
+    /// The characters of the text, with the variation selectors behind them.
+    fn text_sequences(&self) -> impl Iterator<Item = (u32, Option<u32>)> + '_ {
+        let mut characters = self.characters().map(u32::from).peekable();
+        std::iter::from_fn(move || {
+            let code = characters.next()?;
+            Some((code, characters.next_if(|next| is_variation_selector(*next))))
+        })
+    }
+
+    /// The glyphs of the text in its order, without those of characters that the font lacks. No layout is applied.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if the font's table directory cannot be read.
+    pub fn text_glyphs(&self, font: &FontRef<'_>) -> Result<Vec<u16>, Error> {
+        let map = Characters::of(font)?;
+        Ok(self.text_sequences().filter_map(|(code, selector)| map.glyph(code, selector)).collect())
     }
 
     /// The code points of the text and of the list.
@@ -112,23 +135,30 @@ impl Selection {
         self.characters().map(u32::from).chain(self.unicodes.0.iter().flat_map(Clone::clone))
     }
 
-    /// The glyphs of what the selected characters compose to, which shapers put in their place: é for e and an accent.
+    /// The glyphs that shapers put in the place of the selected characters before layout: é for e and an accent, the halves of a vowel
+    /// sign that surrounds its letter, the variants that the selected variation selectors make of the others, and the dotted circle
+    /// under signs without a letter.
     ///
     /// # Errors
     ///
     /// `Malformed` if the font's table directory cannot be read.
-    pub fn compositions(&self, font: &FontRef<'_>) -> Result<Vec<u16>, Error> {
-        let font = owned(font)?;
-        let charmap = font.charmap();
-        let lookup = |code: u32| charmap.map_unicode(code).and_then(|gid| u16::try_from(gid.to_u32()).ok());
-        let with_parts = |code: u32| match lookup(code) {
+    pub fn shaped_glyphs(&self, font: &FontRef<'_>) -> Result<Vec<u16>, Error> {
+        let map = Characters::of(font)?;
+        let with_parts = |code: u32| match map.glyph(code, None) {
             Some(_) => vec![code],
-            None => parts(code, |part| lookup(part).is_some()).unwrap_or_default(),
+            None => map.parts(code).unwrap_or_default(),
         };
-        Ok(compositions(&self.codes().flat_map(with_parts).collect())
-            .into_iter()
-            .filter_map(lookup)
-            .collect())
+        let codes: BTreeSet<u32> = self.codes().collect();
+        let mut shaped: BTreeSet<u32> = codes.iter().flat_map(|code| always_split(*code)).collect();
+        let circle = codes.iter().any(|code| needs_letter(*code)).then_some(DOTTED_CIRCLE);
+        shaped.extend(circle);
+        let present = codes.iter().chain(&shaped).flat_map(|code| with_parts(*code)).collect();
+        shaped.extend(compositions(&present));
+        let mut glyphs: Vec<u16> = shaped.iter().filter_map(|code| map.glyph(*code, None)).collect();
+        for selector in codes.iter().filter(|code| is_variation_selector(**code)) {
+            glyphs.extend(codes.iter().filter_map(|code| map.variant(*code, *selector)));
+        }
+        Ok(glyphs)
     }
 
     fn add_names(&self, font: &FontRef<'_>, gids: &mut BTreeSet<u16>) -> Result<(), Error> {
@@ -162,6 +192,31 @@ impl Selection {
         }
         gids.extend(self.names.0.iter().filter_map(|name| by_name.get(name)));
         Ok(())
+    }
+}
+
+/// A font's character map.
+struct Characters(Font);
+
+impl Characters {
+    fn of(font: &FontRef<'_>) -> Result<Self, Error> {
+        Ok(Self(owned(font)?))
+    }
+
+    /// The glyph of a character, or of its variant if it has one for the variation selector.
+    fn glyph(&self, code: u32, selector: Option<u32>) -> Option<u16> {
+        let variant = selector.and_then(|selector| self.variant(code, selector));
+        variant.or_else(|| u16::try_from(self.0.charmap().map_unicode(code)?.to_u32()).ok())
+    }
+
+    /// The glyph of a variation sequence, if the font lists it.
+    fn variant(&self, code: u32, selector: u32) -> Option<u16> {
+        u16::try_from(self.0.charmap().map_unicode_variant(code, selector)?.to_u32()).ok()
+    }
+
+    /// What stands for a character that the font lacks, of characters that it has.
+    fn parts(&self, code: u32) -> Option<Vec<u32>> {
+        parts(code, |part| self.glyph(part, None).is_some())
     }
 }
 

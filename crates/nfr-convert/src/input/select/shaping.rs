@@ -3,7 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use unicode_normalization::char::{canonical_combining_class, compose, decompose_canonical};
+use unicode_normalization::char::{
+    canonical_combining_class, compose, decompose_canonical, is_combining_mark,
+};
 
 /// What stands for a character that the font lacks, of characters that it `has`: a letter, with as many of the accents as there is one
 /// with, and the others as marks; a hyphen for one that does not break lines; the space for a space of another width. None if the
@@ -43,9 +45,72 @@ pub(super) fn compositions(codes: &BTreeSet<u32>) -> BTreeSet<u32> {
     found
 }
 
+/// The circle that a shaper draws under a sign that has no letter before it.
+pub(super) const DOTTED_CIRCLE: u32 = 0x25cc;
+
+/// Whether a shaper draws a sign on [`DOTTED_CIRCLE`] where no letter stands before it: the signs of the scripts that HarfBuzz shapes
+/// syllable by syllable.
+pub(super) fn needs_letter(code: u32) -> bool {
+    let by_syllables = matches!(code, 0x900..=0xdff | 0xf00..=0x109f | 0x1700..=0x1cff | 0xa800..=0xabff | 0x1_0a00..=0x1_1fff);
+    by_syllables && char::from_u32(code).is_some_and(is_combining_mark)
+}
+
+/// What shapers split a character into even if the font has it: vowel signs that surround their letter, in Indic scripts and Khmer,
+/// and the vowel AM of Thai and Lao. Empty for other characters.
+pub(super) fn always_split(code: u32) -> Vec<u32> {
+    let mut parts = Vec::new();
+    match code {
+        0xe33 | 0xeb3 => parts.extend([code + 0x1a, code - 1]),
+        // The decompositions of HarfBuzz's Khmer shaper, which Unicode does not have.
+        0x17be..=0x17c0 | 0x17c4 | 0x17c5 => parts.push(0x17c1),
+        0x900..=0x1fff if !matches!(code, 0x1d00..) => {
+            let character = char::from_u32(code).unwrap_or_default();
+            decompose_canonical(character, |part| parts.push(part.into()));
+            parts.retain(|part| *part != code);
+        }
+        _ => {}
+    }
+    parts
+}
+
+/// Whether a character selects the variant of the character before it (Unicode 16, sec. 23.4).
+pub(super) fn is_variation_selector(code: u32) -> bool {
+    matches!(code, 0x180b..=0x180d | 0x180f | 0xfe00..=0xfe0f | 0xe_0100..=0xe_01ef)
+}
+
+/// Whether a character that the font lacks is drawn as nothing, as joiners and variation selectors are: Unicode's property
+/// Default_Ignorable_Code_Point, without the fillers of Hangul, as in HarfBuzz.
+pub(super) fn is_ignorable(code: u32) -> bool {
+    matches!(
+        code,
+        0xad | 0x34f | 0x61c | 0x17b4..=0x17b5 | 0x180b..=0x180f | 0x200b..=0x200f | 0x202a..=0x202e | 0x2060..=0x206f
+            | 0xfe00..=0xfe0f | 0xfeff | 0xfff0..=0xfff8 | 0x1_d173..=0x1_d17a | 0xe_0000..=0xe_0fff
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn vowel_signs_around_a_letter_are_split_and_accented_letters_are_not() {
+        assert_eq!(always_split(0x9cb), [0x9c7, 0x9be]);
+        assert_eq!(always_split(0xbcc), [0xbc6, 0xbd7]);
+        assert_eq!(always_split(0x958), [0x915, 0x93c]);
+        assert_eq!(always_split(0x17c4), [0x17c1]);
+        assert_eq!(always_split(0xe33), [0xe4d, 0xe32]);
+        assert!(['é', 'ạ', 'क', '가'].iter().all(|c| always_split(u32::from(*c)).is_empty()));
+    }
+
+    #[test]
+    fn signs_of_indic_scripts_need_a_letter_and_letters_and_accents_do_not() {
+        assert!(['\u{93f}', '\u{94d}', '\u{902}', '\u{17be}'].iter().all(|c| needs_letter(u32::from(*c))));
+        assert!(
+            ['क', 'a', '\u{301}', '\u{e31}', '\u{64b}', '\u{fe0f}']
+                .iter()
+                .all(|c| !needs_letter(u32::from(*c)))
+        );
+    }
 
     #[test]
     fn a_character_that_is_missing_has_parts() {
