@@ -147,8 +147,9 @@ impl TeacherAt {
         self.hinted_with_error(gid).map(|(outline, _)| outline)
     }
 
-    /// The hinted outline, and the error of the glyph's hint program if it fails. Other renderers keep what the program
-    /// has done up to the error, and so does this teacher.
+    /// The hinted outline, and the error of the glyph's hint program if it fails. The teacher keeps what the program has
+    /// done up to the error. So do other renderers, but not for every error: FreeType goes on after an instruction whose
+    /// point does not exist.
     ///
     /// # Errors
     ///
@@ -168,8 +169,8 @@ impl TeacherAt {
                 });
                 let outline = draw(lenient, gid).map_err(|e| undrawable(gid, Some(ppem), &e))?;
                 let hint_error = format!(
-                    "the hint program of glyph {gid} fails at {ppem} ppem ({e}); other renderers ignore that, and so \
-                     does the model"
+                    "the hint program of glyph {gid} fails at {ppem} ppem ({e}); the model learns what it has done up to \
+                     there, and renderers that go on after the failing instruction may draw the glyph differently"
                 );
                 Ok((outline, Some(hint_error)))
             }
