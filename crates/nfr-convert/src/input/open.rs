@@ -45,7 +45,16 @@ pub fn units_per_em(font: &FontRef<'_>) -> Result<u16, Error> {
 ///
 /// `Malformed` if its table directory cannot be read.
 pub fn owned(font: &FontRef<'_>) -> Result<Font, Error> {
-    Font::new(font.data().as_bytes().to_vec(), font.ttc_index().unwrap_or(0)).ok_or_else(|| {
+    owned_bytes(font.data().as_bytes().to_vec(), font.ttc_index().unwrap_or(0))
+}
+
+/// A font file's bytes, or those of one font of a collection, for skrifa.
+///
+/// # Errors
+///
+/// As [`owned`].
+pub(crate) fn owned_bytes(data: Vec<u8>, index: u32) -> Result<Font, Error> {
+    Font::new(data, index).ok_or_else(|| {
         Error::Malformed("skrifa cannot read the font's table directory; repair the font".into())
     })
 }

@@ -2,7 +2,11 @@
 //!
 //! skrifa falls back silently in several places. Here the interpreter is requested explicitly, and whatever
 //! would make it do something else than run the font's own programs at the requested size is an error.
+//!
+//! Where skrifa's interpreter and FreeType's follow different rules, the hinted outlines are those of an equivalent copy of
+//! the font, on which skrifa gives what FreeType gives on the font itself (`equivalent`, and `docs/upstream.md`).
 
+mod equivalent;
 mod outline;
 pub(crate) mod unhinted;
 
@@ -10,10 +14,12 @@ use std::sync::OnceLock;
 
 use read_fonts::tables::glyf::{Glyph, is_hint_reliant};
 use read_fonts::{FontRef, TableProvider};
+use skrifa::font::Font;
 use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, ScalerFont, ScalerSource};
 
 use crate::error::Error;
 use crate::input::ppem::MAX_TEACHER_PPEM;
+use equivalent::Equivalent;
 use nfr::Target;
 use unhinted::{draw, glyf_of, undrawable};
 
@@ -23,6 +29,8 @@ pub(crate) use unhinted::UnhintedOutlines;
 /// A hinted font as ground truth. It keeps a copy of the font, and may be used from several threads.
 pub struct Teacher {
     unhinted: UnhintedOutlines,
+    /// The font whose programs are run.
+    hinted: Font,
     raster: RasterTarget,
 }
 
@@ -68,7 +76,9 @@ impl Teacher {
                     .into(),
             ));
         }
-        Ok(Self { unhinted, raster: raster_target(target)? })
+        let Equivalent { font: copy } = Equivalent::of(font)?;
+        let hinted = copy.unwrap_or_else(|| unhinted.font().clone());
+        Ok(Self { unhinted, hinted, raster: raster_target(target)? })
     }
 
     /// Font units in an em.
@@ -84,7 +94,7 @@ impl Teacher {
     /// `Malformed` if a program fails.
     pub fn at(&self, ppem: u16) -> Result<TeacherAt, Error> {
         check_ppem(f32::from(ppem))?;
-        let scaler = interpreter(self.unhinted.source(), ppem, self.raster, OnHintError::Fail);
+        let scaler = interpreter(glyf_of(self.hinted.clone()), ppem, self.raster, OnHintError::Fail);
         if let Some(e) = scaler.hinting_error() {
             return Err(Error::Malformed(format!(
                 "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"

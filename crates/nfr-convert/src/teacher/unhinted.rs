@@ -35,8 +35,8 @@ impl UnhintedOutlines {
     }
 
     /// The font, for other ways to draw it.
-    pub(crate) fn source(&self) -> ScalerSource {
-        glyf_of(self.unscaled.font().clone())
+    pub(crate) fn font(&self) -> &Font {
+        self.unscaled.font()
     }
 
     /// An outline in em.
@@ -48,7 +48,7 @@ impl UnhintedOutlines {
 
     /// An outline at a size in pixels per em.
     pub(crate) fn at(&self, gid: u16, ppem: f32) -> Result<Outline, Error> {
-        let scaler = ScalerFont::force_unhinted(self.source(), Some(ppem));
+        let scaler = ScalerFont::force_unhinted(glyf_of(self.font().clone()), Some(ppem));
         draw(&scaler, gid).map_err(|e| undrawable(gid, Some(ppem), &e))
     }
 }
