@@ -380,6 +380,7 @@ fn models_are_added_to_a_font_that_has_some() {
     assert_eq!(std::fs::read(&second).unwrap(), second_bytes);
 }
 
+#[test]
 fn a_variation_selector_that_the_font_lacks_draws_nothing_and_is_no_error() {
     let directory = Directory::new();
     let [output, sheet] = ["out.ttf", "sheet.png"].map(|name| directory.name(name));
