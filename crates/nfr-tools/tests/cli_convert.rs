@@ -384,7 +384,7 @@ fn models_are_added_to_a_font_that_has_some() {
 fn a_variation_selector_that_the_font_lacks_draws_nothing_and_is_no_error() {
     let directory = Directory::new();
     let [output, sheet] = ["out.ttf", "sheet.png"].map(|name| directory.name(name));
-    let text = "A\u{fe0f}\u{200d}g";
+    let text = "A\u{fe0f}\u{2060}g";
     let run = nfr_convert(&["--text", text, "--strict", "--ppem", "12", SANS, &output]).succeeds();
     assert_eq!(run.stderr, "");
     let arguments = ["render", &output, "--ppem", "12", "--strict", "--text"];

@@ -23,6 +23,8 @@ use nfr::internals::table::Dropout;
 
 /// Glyphs that are trained together. The number is fixed, because the last digits of the result depend on it.
 const CHUNK: usize = 2;
+/// A model with this much more error than the unhinted outline, in levels of 255 for a mean pixel, looks worse; less is not seen.
+const VISIBLE_LEVELS: f64 = 0.125;
 
 /// What the stages of one conversion share.
 #[derive(Clone, Copy)]
@@ -72,12 +74,14 @@ impl Stages<'_> {
         Ok(Measured { learnt, all, dropout, is_worse_than_unhinted })
     }
 
-    /// Whether the unhinted outline has a smaller error than `sums`. Large sizes come first: for nearly all glyphs the error of the
-    /// largest alone decides.
+    /// Whether the unhinted outline has an error that is visibly smaller than `sums`. Outline models are nearer than that to the
+    /// teacher, so that nothing is drawn; for most fields the largest size alone decides.
     fn unhinted_is_nearer(&self, samples: &GlyphSamples, sums: Sums) -> bool {
+        let pixels = sums.figures().pixels as f64;
+        let least = sums.absolute() as f64 - VISIBLE_LEVELS * pixels;
         let mut unhinted = Sums::default();
         for sample in samples.sizes.iter().rev().filter(|size| !size.predicted) {
-            if unhinted.absolute() >= sums.absolute() {
+            if unhinted.absolute() as f64 >= least {
                 return false;
             }
             let plain = self.teacher.unhinted(samples.gid, f32::from(sample.ppem));
@@ -85,7 +89,7 @@ impl Stages<'_> {
             let Ok(plain) = plain.and_then(|outline| outline.rasterize()) else { return false };
             unhinted.add(&sample.bitmap, &plain);
         }
-        unhinted.absolute() < sums.absolute()
+        (unhinted.absolute() as f64) < least
     }
 }
 
@@ -98,7 +102,7 @@ pub(super) struct Measured {
     pub(super) all: Sums,
     /// What the hints ask of a renderer in black and white, by size; empty for a blank glyph.
     pub(super) dropout: BTreeMap<u16, Dropout>,
-    /// Whether the glyph's unhinted outline is nearer to the teacher.
+    /// Whether the glyph's unhinted outline is visibly nearer to the teacher.
     pub(super) is_worse_than_unhinted: bool,
 }
 

@@ -148,7 +148,7 @@ fn reports(table: &Table<'_>, measured: &BTreeMap<u16, Measured>) -> Result<Vec<
     measured.iter().map(report).collect()
 }
 
-/// Warns of the glyphs whose models have a larger error than their unhinted outlines.
+/// Warns of the glyphs whose models have a visibly larger error than their unhinted outlines.
 fn warn_of_worse(measured: &BTreeMap<u16, Measured>, progress: &dyn Progress) {
     let worse: Vec<u16> =
         measured.iter().filter(|(_, m)| m.is_worse_than_unhinted).map(|(gid, _)| *gid).collect();

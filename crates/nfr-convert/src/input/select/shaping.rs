@@ -48,11 +48,11 @@ pub(super) fn compositions(codes: &BTreeSet<u32>) -> BTreeSet<u32> {
 /// The circle that a shaper draws under a sign that has no letter before it.
 pub(super) const DOTTED_CIRCLE: u32 = 0x25cc;
 
-/// Whether a shaper draws a sign on [`DOTTED_CIRCLE`] where no letter stands before it: the signs of the scripts that HarfBuzz shapes
-/// syllable by syllable.
+/// Whether a shaper draws a sign on [`DOTTED_CIRCLE`] where no letter stands beside it: the signs of the scripts that HarfBuzz shapes
+/// syllable by syllable, and Malayalam's dot reph, which is a letter in Unicode.
 pub(super) fn needs_letter(code: u32) -> bool {
     let by_syllables = matches!(code, 0x900..=0xdff | 0xf00..=0x109f | 0x1700..=0x1cff | 0xa800..=0xabff | 0x1_0a00..=0x1_1fff);
-    by_syllables && char::from_u32(code).is_some_and(is_combining_mark)
+    code == 0xd4e || by_syllables && char::from_u32(code).is_some_and(is_combining_mark)
 }
 
 /// What shapers split a character into even if the font has it: vowel signs that surround their letter, in Indic scripts and Khmer,
@@ -63,7 +63,7 @@ pub(super) fn always_split(code: u32) -> Vec<u32> {
         0xe33 | 0xeb3 => parts.extend([code + 0x1a, code - 1]),
         // The decompositions of HarfBuzz's Khmer shaper, which Unicode does not have.
         0x17be..=0x17c0 | 0x17c4 | 0x17c5 => parts.push(0x17c1),
-        0x900..=0x1fff if !matches!(code, 0x1d00..) => {
+        0x900..=0x1cff => {
             let character = char::from_u32(code).unwrap_or_default();
             decompose_canonical(character, |part| parts.push(part.into()));
             parts.retain(|part| *part != code);
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn signs_of_indic_scripts_need_a_letter_and_letters_and_accents_do_not() {
-        assert!(['\u{93f}', '\u{94d}', '\u{902}', '\u{17be}'].iter().all(|c| needs_letter(u32::from(*c))));
+        assert!(['\u{93f}', '\u{94d}', '\u{d4e}', '\u{17be}'].iter().all(|c| needs_letter(u32::from(*c))));
         assert!(
             ['क', 'a', '\u{301}', '\u{e31}', '\u{64b}', '\u{fe0f}']
                 .iter()
