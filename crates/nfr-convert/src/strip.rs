@@ -234,7 +234,7 @@ fn strip_composite(mut reader: Reader<'_>, out: &mut Vec<u8>) -> Result<usize, C
 }
 
 /// The bytes of a component behind its flags: glyph, two arguments, transform.
-fn component_size(flags: Component) -> usize {
+pub(crate) fn component_size(flags: Component) -> usize {
     // OpenType 1.9 reserves this bit, but skrifa reads it.
     let glyph = if flags.contains(Component::GID_IS_24_BIT) { 3 } else { 2 };
     let arguments = if flags.contains(Component::ARG_1_AND_2_ARE_WORDS) { 4 } else { 2 };

@@ -8,6 +8,7 @@ mod glyphs;
 mod outlines;
 mod readable;
 mod training;
+mod uncertain;
 mod warnings;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,6 +35,7 @@ use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
 use outlines::Learned;
 use readable::readable;
+use uncertain::warn_of_uncertain;
 use warnings::glyphs_text;
 
 /// Converts a font: finds or trains a model for each glyph and writes a font that carries them instead of hints.
@@ -82,6 +84,7 @@ pub fn resume(
     let is_between = |ppem: &u16| !(ppem - header.first_ppem).is_multiple_of(options.ppem_step);
     let between = (header.first_ppem..=header.last_ppem).filter(is_between).map(|ppem| teacher.at(ppem));
     let between = between.collect::<Result<Vec<_>, _>>()?;
+    warn_of_uncertain(&teacher, &options.gids, progress);
     let (gids, unreadable) = readable(&[&sizes, &between], options, progress)?;
     let options = &Options { gids, ..options.clone() };
     warn_of_assembled(&teacher, options, progress)?;

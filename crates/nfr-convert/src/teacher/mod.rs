@@ -29,8 +29,9 @@ pub(crate) use unhinted::UnhintedOutlines;
 /// A hinted font as ground truth. It keeps a copy of the font, and may be used from several threads.
 pub struct Teacher {
     unhinted: UnhintedOutlines,
-    /// The font whose programs are run.
+    /// The font whose programs are run. Behind the font's own glyphs it may have more.
     hinted: Font,
+    uncertain: Vec<u16>,
     raster: RasterTarget,
 }
 
@@ -76,14 +77,20 @@ impl Teacher {
                     .into(),
             ));
         }
-        let Equivalent { font: copy } = Equivalent::of(font)?;
+        let Equivalent { font: copy, uncertain } = Equivalent::of(font)?;
         let hinted = copy.unwrap_or_else(|| unhinted.font().clone());
-        Ok(Self { unhinted, hinted, raster: raster_target(target)? })
+        Ok(Self { unhinted, hinted, uncertain, raster: raster_target(target)? })
     }
 
     /// Font units in an em.
     pub fn units_per_em(&self) -> u16 {
         self.unhinted.units_per_em()
+    }
+
+    /// The composite glyphs, ascending, that FreeType may hint otherwise: a program in them reads what another one wrote, in a
+    /// way that skrifa does not follow.
+    pub fn uncertain(&self) -> &[u16] {
+        &self.uncertain
     }
 
     /// Sets the interpreter up for one size: runs `fpgm` and `prep`. If the font switches hinting off at this
@@ -105,7 +112,13 @@ impl Teacher {
                 "skrifa does not run the font's hint programs at {ppem} ppem; pass a hinted TrueType font"
             )));
         }
-        Ok(TeacherAt { strict: scaler, lenient: OnceLock::new(), ppem, raster: self.raster })
+        Ok(TeacherAt {
+            strict: scaler,
+            lenient: OnceLock::new(),
+            glyphs: self.unhinted.font().num_glyphs(),
+            ppem,
+            raster: self.raster,
+        })
     }
 
     /// The unhinted outline at any size.
@@ -133,6 +146,8 @@ pub struct TeacherAt {
     strict: ScalerFont,
     /// Created for the first glyph whose program fails, which most fonts do not have.
     lenient: OnceLock<ScalerFont>,
+    /// The number of the font's own glyphs.
+    glyphs: u32,
     ppem: u16,
     raster: RasterTarget,
 }
@@ -165,6 +180,9 @@ impl TeacherAt {
     ///
     /// As `hinted`.
     pub fn hinted_with_error(&self, gid: u16) -> Result<(Outline, Option<String>), Error> {
+        if u32::from(gid) >= self.glyphs {
+            return Err(Error::NoSuchGlyph(gid.into()));
+        }
         let ppem = f32::from(self.ppem);
         match draw(&self.strict, gid) {
             Ok(outline) => Ok((outline, None)),

@@ -17,6 +17,19 @@ pub(crate) fn box_glyph(program: &[u8]) -> Vec<u8> {
     data
 }
 
+/// A composite of other glyphs, all in place, with a program.
+pub(crate) fn composite_glyph(program: &[u8], components: &[u16]) -> Vec<u8> {
+    let mut data = words(&[-1, 0, 0, 500, 500]);
+    for (index, gid) in components.iter().enumerate() {
+        // Arguments are words and offsets; more components; instructions.
+        let more = if index + 1 < components.len() { 0x20 } else { 0x100 };
+        data.extend(words(&[0x3 | more, *gid as i16, 0, 0]));
+    }
+    data.extend(words(&[program.len() as i16]));
+    data.extend(program);
+    data
+}
+
 /// A font of these glyphs after an empty `.notdef`, with two control values of 0 and a storage area of 8 cells. The line of
 /// `OS/2` is 800 to -200 units, that of `hhea` 900 to -200.
 pub(crate) fn font_of(glyphs: &[Vec<u8>], fpgm: &[u8]) -> Vec<u8> {
