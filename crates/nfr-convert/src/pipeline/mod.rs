@@ -8,7 +8,6 @@ mod glyphs;
 mod outlines;
 mod readable;
 mod training;
-mod uncertain;
 mod warnings;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,8 +34,7 @@ use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
 use outlines::Learned;
 use readable::readable;
-use uncertain::warn_of_uncertain;
-use warnings::glyphs_text;
+use warnings::{glyphs_text, warn_of_uncertain};
 
 /// Converts a font: finds or trains a model for each glyph and writes a font that carries them instead of hints.
 ///
