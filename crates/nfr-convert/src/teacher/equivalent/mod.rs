@@ -67,3 +67,23 @@ fn with_passed_writes(font: &FontRef<'_>) -> (Option<Vec<u8>>, Vec<u16>) {
     }
     (copy, uncertain)
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    const SANS: &[u8] = include_bytes!("../../../fonts/LiberationSans-Regular.ttf");
+
+    #[test]
+    fn a_font_is_copied_only_where_it_has_to_differ() {
+        let font = FontRef::new(SANS).unwrap();
+        assert_eq!(with_passed_writes(&font), (None, Vec::new()));
+        let copy = line::with_typo_line(&font).unwrap();
+        assert_eq!(copy.iter().zip(SANS).filter(|(a, b)| a != b).count(), 1);
+        assert_eq!(copy.len(), SANS.len());
+        // The copy needs no other one.
+        let equivalent = Equivalent::of(&FontRef::new(&copy).unwrap()).unwrap();
+        assert!(equivalent.font.is_none() && equivalent.uncertain.is_empty());
+    }
+}
