@@ -46,7 +46,7 @@ fn converted(data: &[u8], options: &Options) -> (Conversion, Vec<String>) {
     let conversion = convert(data, options, &warnings).unwrap();
     let mut warnings = warnings.0.into_inner().unwrap();
     // That of fields, which have more error than the unhinted outlines before they are trained.
-    warnings.retain(|warning| !warning.contains("larger error"));
+    warnings.retain(|warning| !warning.contains("farther from the hinted bitmaps"));
     (conversion, warnings)
 }
 

@@ -155,7 +155,7 @@ fn warn_of_worse(measured: &BTreeMap<u16, Measured>, progress: &dyn Progress) {
         measured.iter().filter(|(_, m)| m.is_worse_than_unhinted).map(|(gid, _)| *gid).collect();
     if !worse.is_empty() {
         progress.warn(&format!(
-            "the models of {} have a larger error than the unhinted outlines",
+            "the models of {} are farther from the hinted bitmaps than the unhinted outlines",
             glyphs_text(&worse)
         ));
     }
