@@ -68,7 +68,9 @@ impl Font {
         let units_per_em = head_units(&file)?;
         check_tables(&file, &data)?;
         let glyph_count: u32 = file.maxp().map_err(|_| malformed(b"maxp"))?.num_glyphs().into();
-        let header = *Table::parse(&data[table.clone()])?.header();
+        let models = Table::parse(&data[table.clone()])?;
+        models.check()?;
+        let header = *models.header();
         if header.glyph_count != 0 && u32::from(header.glyph_count) != glyph_count {
             return Err(Error::Renumbered { models: header.glyph_count.into(), font: glyph_count });
         }

@@ -37,8 +37,9 @@ pub struct Table<'a> {
     composed: ComposedGlyphs<'a>,
     networks: NetworkIndex<'a>,
     outlines: OutlineIndex<'a>,
-    certificate: Option<Certificate<'a>>,
-    dropout: Option<DropoutModes<'a>>,
+    flags: u8,
+    /// Where the certificate and the modes of drop-out control begin, which are read when they are asked for.
+    rest: (FontData<'a>, usize),
     payload: &'a [u8],
 }
 
@@ -105,7 +106,7 @@ impl<'a> Table<'a> {
             0 => (OutlineIndex::default(), outlines_at),
             _ => OutlineIndex::parse(data, outlines_at)?,
         };
-        let mut table = Self {
+        let table = Self {
             header,
             len: bytes.len(),
             gids: data.read_array(gids_at..lengths_at).map_err(|_| truncated(gids_at))?,
@@ -115,17 +116,9 @@ impl<'a> Table<'a> {
             composed,
             networks,
             outlines,
-            certificate: None,
-            dropout: None,
+            flags,
+            rest: (data, certificate_at),
         };
-        let mut dropout_at = certificate_at;
-        if flags & CERTIFICATE != 0 {
-            let (certificate, end) = Certificate::parse(data, certificate_at, table.gids().len())?;
-            (table.certificate, dropout_at) = (Some(certificate), end);
-        }
-        if flags & DROPOUT != 0 {
-            table.dropout = Some(DropoutModes::parse(data, dropout_at)?);
-        }
         Ok(table)
     }
 
@@ -156,13 +149,33 @@ impl<'a> Table<'a> {
     }
 
     /// What the conversion said of its result, if it did.
-    pub fn certificate(&self) -> Option<&Certificate<'a>> {
-        self.certificate.as_ref()
+    pub fn certificate(&self) -> Option<Certificate<'a>> {
+        self.read_rest().ok()?.0
     }
 
     /// What the hints ask of a renderer in black and white, if the table says it.
-    pub fn dropout(&self) -> Option<&DropoutModes<'a>> {
-        self.dropout.as_ref()
+    pub fn dropout(&self) -> Option<DropoutModes<'a>> {
+        self.read_rest().ok()?.1
+    }
+
+    /// Checks what is read when it is asked for, and only then.
+    ///
+    /// # Errors
+    ///
+    /// `MalformedModels` if the certificate or the modes of drop-out control are damaged.
+    pub fn check(&self) -> Result<(), Error> {
+        self.read_rest().map(|_| ())
+    }
+
+    fn read_rest(&self) -> Result<(Option<Certificate<'a>>, Option<DropoutModes<'a>>), Error> {
+        let (data, mut at) = self.rest;
+        let mut certificate = None;
+        if self.flags & CERTIFICATE != 0 {
+            let (found, end) = Certificate::parse(data, at, self.gids().len())?;
+            (certificate, at) = (Some(found), end);
+        }
+        let dropout = if self.flags & DROPOUT == 0 { None } else { Some(DropoutModes::parse(data, at)?) };
+        Ok((certificate, dropout))
     }
 
     /// The glyphs that have a field of their own, ascending.

@@ -152,7 +152,7 @@ fn a_table_that_ends_in_its_certificate_is_refused() {
         let mut bytes = Vec::new();
         let font = Font::new(neural.clone()).unwrap();
         let table = nfr::internals::table(&font).unwrap();
-        let certificate: &Certificate<'_> = table.certificate().unwrap();
+        let certificate: Certificate<'_> = table.certificate().unwrap();
         certificate.write(certificate.errors(), &mut bytes);
         bytes.len()
     };

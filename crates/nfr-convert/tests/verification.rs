@@ -97,7 +97,7 @@ fn a_model_that_was_changed_is_an_error_or_found() {
     // Models are before the certificate.
     let mut certificate = Vec::new();
     let read = nfr::Font::new(neural.clone()).unwrap();
-    let stated = *nfr::internals::table(&read).unwrap().certificate().unwrap();
+    let stated = nfr::internals::table(&read).unwrap().certificate().unwrap();
     stated.write(stated.errors(), &mut certificate);
     for from_end in (certificate.len() + 8..nfrt.len() - nfr::internals::table::HEADER_LEN).step_by(3) {
         let mut nfrt = nfrt.clone();

@@ -166,7 +166,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         None => writeln!(out, "certificate     none")?,
     }
     if let Some(dropout) = table.dropout() {
-        writeln!(out, "drop-outs       {}", dropout_text(first_ppem, dropout))?;
+        writeln!(out, "drop-outs       {}", dropout_text(first_ppem, &dropout))?;
     }
     if args.glyphs {
         print_glyphs(&mut out, &table, info.certificate.as_ref())?;

@@ -32,7 +32,7 @@ pub fn compact(data: &[u8]) -> Result<Vec<u8>, Error> {
         font.file.table_data(TAG).map_or(Vec::new(), |table| table.as_bytes()[..HEADER_LEN].to_vec());
     outlines::messages(&[(&font, &gids)])?.write(&mut bytes)?;
     if let Some(certificate) = table.certificate() {
-        write_certificate(&mut bytes, certificate, certificate.errors());
+        write_certificate(&mut bytes, &certificate, certificate.errors());
     }
     if let Some(modes) = table.dropout() {
         let exceptions: Vec<_> = modes.exceptions().collect();

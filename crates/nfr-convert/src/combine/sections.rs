@@ -78,9 +78,9 @@ pub(super) struct Texts {
 
 impl Texts {
     /// Those of two certificates: where they differ, one after the other.
-    pub(super) fn of(base: Option<&Certificate<'_>>, addition: Option<&Certificate<'_>>) -> Self {
-        let both = [base, addition].map(|certificate| {
-            certificate.map_or([""; 3], |certificate| {
+    pub(super) fn of(base: Option<Certificate<'_>>, addition: Option<Certificate<'_>>) -> Self {
+        let both = [&base, &addition].map(|certificate| {
+            certificate.as_ref().map_or([""; 3], |certificate| {
                 [certificate.teacher, certificate.converter, certificate.options]
             })
         });
@@ -89,7 +89,7 @@ impl Texts {
             [a, b] if a.split("; ").any(|known| known == b) => a.to_owned(),
             [a, b] => format!("{a}; {b}"),
         };
-        let is_exact = [base, addition].into_iter().flatten().all(|certificate| certificate.is_exact);
+        let is_exact = [&base, &addition].into_iter().flatten().all(|certificate| certificate.is_exact);
         Self { is_exact, texts: [text(0), text(1), text(2)] }
     }
 
