@@ -4,26 +4,13 @@
 
 mod samples;
 
-use std::sync::Mutex;
-
 use nfr::{Font, Rasterizer, Target};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Conversion, Error, Options, Progress, Quality, Shape, convert};
+use nfr_convert::{Conversion, Error, Options, Quality, Shape, convert};
 use read_fonts::FontRef;
-use samples::{FONTS, Silent, font, gid, gids, with_flipped_points};
-
-/// Remembers warnings.
-#[derive(Default)]
-struct Warnings(Mutex<Vec<String>>);
-
-impl Progress for Warnings {
-    fn glyph_done(&self, _: u16, _: f64) {}
-    fn warn(&self, message: &str) {
-        self.0.lock().unwrap().push(message.to_owned());
-    }
-}
+use samples::{FONTS, Silent, Warnings, font, gid, gids, with_flipped_points};
 
 /// Liberation Sans with an 'e' whose points 3 to 6 are taken off the curve below 12 ppem.
 fn flipped() -> Vec<u8> {

@@ -4,16 +4,17 @@
 
 #[path = "samples/programs.rs"]
 mod programs;
+mod samples;
 
 use std::rc::Rc;
-use std::sync::Mutex;
 
 use freetype::face::LoadFlag;
 use nfr::Target;
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Error, Options, Progress, convert};
+use nfr_convert::{Error, Options, convert};
 use programs::{box_glyph, composite_glyph, font_of};
 use read_fonts::FontRef;
+use samples::Warnings;
 
 const PPEM: u16 = 12;
 const TARGETS: [(Target, LoadFlag); 2] =
@@ -52,14 +53,6 @@ fn heights_of_both(data: &[u8], gid: u16) -> Vec<i64> {
 
 /// The composite glyphs about which a conversion of all glyphs warns.
 fn warnings(data: &[u8]) -> Vec<String> {
-    #[derive(Default)]
-    struct Warnings(Mutex<Vec<String>>);
-    impl Progress for Warnings {
-        fn glyph_done(&self, _: u16, _: f64) {}
-        fn warn(&self, message: &str) {
-            self.0.lock().unwrap().push(message.to_owned());
-        }
-    }
     let glyphs = skrifa::font::Font::new(data.to_vec(), 0).unwrap().num_glyphs();
     let gids = (1..u16::try_from(glyphs).unwrap()).collect();
     let progress = Warnings::default();

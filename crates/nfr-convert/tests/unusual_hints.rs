@@ -3,30 +3,17 @@
 
 mod samples;
 
-use std::sync::Mutex;
-
 use nfr::{Font, Rasterizer, Target};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Error, Options, Progress, Quality, Shape, convert};
+use nfr_convert::{Error, Options, Quality, Shape, convert};
 use read_fonts::FontRef;
-use samples::{FONTS, Silent, ascii, font, gid, gids, with_program, with_tables};
+use samples::{FONTS, Silent, Warnings, ascii, font, gid, gids, with_program, with_tables};
 
 /// OpenType 1.9, "TrueType instruction set": PUSHB[1] 4 3, INSTCTRL leaves backward compatibility mode, in which smooth hinting does
 /// not move points in x.
 const NATIVE_CLEARTYPE: [u8; 4] = [0xB1, 4, 3, 0x8E];
-
-/// Remembers warnings.
-#[derive(Default)]
-struct Warnings(Mutex<Vec<String>>);
-
-impl Progress for Warnings {
-    fn glyph_done(&self, _: u16, _: f64) {}
-    fn warn(&self, message: &str) {
-        self.0.lock().unwrap().push(message.to_owned());
-    }
-}
 
 /// SVTCA[x], NPUSHB, and MDAP[1] for each of the first points: rounds them to whole pixels in x.
 fn rounding_in_x(points: u8) -> Vec<u8> {

@@ -7,7 +7,7 @@ use nfr::internals::table::{Certificate, CertifiedErrors, Dropout, DropoutExcept
 
 use super::font::ConvertedFont;
 use crate::error::Error;
-use crate::writer::{GlyphModel, GlyphNetwork, write, write_header};
+use crate::writer::{GlyphModel, GlyphNetwork, add_exception, write, write_header};
 
 /// No table asks for more memory than this for a field; the converter has written it.
 const MEMORY: usize = 1 << 30;
@@ -118,14 +118,8 @@ pub(super) fn dropout(
     let (first, last) = base.font.ppem_range();
     for gid in added.gids().filter(is_new) {
         for ppem in first..=last {
-            let Some(mode) = others.mode(gid.into(), ppem).filter(|mode| usual(ppem) != Some(*mode)) else {
-                continue;
-            };
-            match exceptions.last_mut() {
-                Some(last) if (last.gid, last.last_ppem + 1, last.mode) == (gid, ppem, mode) => {
-                    last.last_ppem = ppem;
-                }
-                _ => exceptions.push(DropoutException { gid, first_ppem: ppem, last_ppem: ppem, mode }),
+            if let Some(mode) = others.mode(gid.into(), ppem).filter(|mode| usual(ppem) != Some(*mode)) {
+                add_exception(&mut exceptions, gid, ppem, mode);
             }
         }
     }

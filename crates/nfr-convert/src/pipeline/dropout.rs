@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nfr::internals::table::{Dropout, DropoutException};
 
 use super::glyphs::Measured;
-use crate::writer::write_dropout;
+use crate::writer::{add_exception, write_dropout};
 
 /// Appends the modes to a table that has its certificate.
 pub(super) fn add_dropout(table: &mut Vec<u8>, measured: &BTreeMap<u16, Measured>) {
@@ -35,12 +35,7 @@ fn modes_of_sizes<'m>(
     let mut exceptions: Vec<DropoutException> = Vec::new();
     for (gid, modes) in glyphs {
         for (&ppem, &mode) in modes.iter().filter(|(ppem, mode)| usual.get(ppem) != Some(mode)) {
-            match exceptions.last_mut() {
-                Some(last) if (last.gid, last.last_ppem + 1, last.mode) == (gid, ppem, mode) => {
-                    last.last_ppem = ppem;
-                }
-                _ => exceptions.push(DropoutException { gid, first_ppem: ppem, last_ppem: ppem, mode }),
-            }
+            add_exception(&mut exceptions, gid, ppem, mode);
         }
     }
     (ranges, exceptions)

@@ -100,6 +100,14 @@ pub(crate) fn write_certificate(
     certificate.write(errors, table);
 }
 
+/// Adds a glyph's mode of drop-out control at a size to those of other glyphs and of its smaller sizes.
+pub(crate) fn add_exception(exceptions: &mut Vec<DropoutException>, gid: u16, ppem: u16, mode: Dropout) {
+    match exceptions.last_mut() {
+        Some(last) if (last.gid, last.last_ppem + 1, last.mode) == (gid, ppem, mode) => last.last_ppem = ppem,
+        _ => exceptions.push(DropoutException { gid, first_ppem: ppem, last_ppem: ppem, mode }),
+    }
+}
+
 /// Appends the modes of drop-out control to a table that has its certificate already.
 pub(crate) fn write_dropout(table: &mut Vec<u8>, ranges: &[(u16, Dropout)], exceptions: &[DropoutException]) {
     table[FLAGS_AT] |= DROPOUT;

@@ -1,6 +1,8 @@
 //! Fonts and conversions for the tests.
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
+use std::sync::Mutex;
+
 use nfr::Bitmap;
 use nfr_convert::{Conversion, Options, Progress, Shape, convert};
 use read_fonts::types::Tag;
@@ -39,6 +41,17 @@ pub(crate) struct Silent;
 
 impl Progress for Silent {
     fn glyph_done(&self, _: u16, _: f64) {}
+}
+
+/// Remembers warnings.
+#[derive(Default)]
+pub(crate) struct Warnings(pub(crate) Mutex<Vec<String>>);
+
+impl Progress for Warnings {
+    fn glyph_done(&self, _: u16, _: f64) {}
+    fn warn(&self, message: &str) {
+        self.0.lock().unwrap().push(message.to_owned());
+    }
 }
 
 /// Converts the glyphs of a text with `steps` steps of training, for sizes 8–64. Without any step the models
