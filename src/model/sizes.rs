@@ -9,6 +9,7 @@ pub struct Scale {
     units_per_em: u16,
     first_ppem: u16,
     last_ppem: u16,
+    whole_sizes: bool,
 }
 
 impl Scale {
@@ -17,7 +18,18 @@ impl Scale {
     pub const fn new(units_per_em: u16, first_ppem: u16, last_ppem: u16) -> Option<Self> {
         let units_fit = units_per_em >= 16 && units_per_em <= 16384;
         let sizes_fit = first_ppem >= 1 && first_ppem <= last_ppem && last_ppem <= MAX_TRAINED_PPEM;
-        if units_fit && sizes_fit { Some(Self { units_per_em, first_ppem, last_ppem }) } else { None }
+        if units_fit && sizes_fit {
+            Some(Self { units_per_em, first_ppem, last_ppem, whole_sizes: false })
+        } else {
+            None
+        }
+    }
+
+    /// The same with hinted sizes that are whole along x too, if the font wants that: bit 3 of `head.flags`, "force ppem to
+    /// integer values" (OpenType 1.9, `head`).
+    #[must_use]
+    pub const fn with_whole_sizes(self, whole_sizes: bool) -> Self {
+        Self { whole_sizes, ..self }
     }
 
     /// Font units in an em.
@@ -46,12 +58,15 @@ impl Scale {
     }
 
     /// How a size is hinted: as the nearest whole one, halves upwards, whose pixel positions are taken over, so that
-    /// edges are as crisp. Nothing is hinted at a size that rounds to none of the trained ones.
+    /// edges are as crisp. What is not hinted, as x for smooth targets, has the size itself, unless the font wants whole
+    /// sizes. Nothing is hinted at a size that rounds to none of the trained ones.
     pub fn at(&self, ppem: f32) -> HintedSize {
         let whole = (ppem + 0.5) as usize;
         if (usize::from(self.first_ppem)..=usize::from(self.last_ppem)).contains(&whole) {
             let index = whole - usize::from(self.first_ppem);
-            HintedSize { ppem, index, trained_ppem: whole as f32, strength: 1.0 }
+            let trained_ppem = whole as f32;
+            let ppem = if self.whole_sizes { trained_ppem } else { ppem };
+            HintedSize { ppem, index, trained_ppem, strength: 1.0 }
         } else {
             HintedSize { ppem, index: 0, trained_ppem: ppem, strength: 0.0 }
         }
@@ -61,7 +76,7 @@ impl Scale {
 /// A size, and the trained size whose grid-fitting it takes.
 #[derive(Debug, Clone, Copy)]
 pub struct HintedSize {
-    /// The size that is drawn, in pixels per em.
+    /// The size of what is not hinted, in pixels per em.
     pub ppem: f32,
     /// The index of the trained size whose displacements are used.
     pub index: usize,

@@ -6,6 +6,7 @@ use core::ops::Range;
 
 use read_fonts::model::Blob;
 use read_fonts::tables::cmap::PlatformId;
+use read_fonts::tables::head::Flags;
 use read_fonts::types::{GlyphId, Tag};
 use read_fonts::{FontRef, TableProvider, model};
 
@@ -66,6 +67,7 @@ impl Font {
         let file = open(&data, index)?;
         let table = range(&file, &data, table::TAG)?.ok_or(Error::NotConverted)?;
         let units_per_em = head_units(&file)?;
+        let whole_sizes = has_whole_sizes(&file)?;
         check_tables(&file, &data)?;
         let glyph_count: u32 = file.maxp().map_err(|_| malformed(b"maxp"))?.num_glyphs().into();
         let models = Table::parse(&data[table.clone()])?;
@@ -75,7 +77,8 @@ impl Font {
             return Err(Error::Renumbered { models: header.glyph_count.into(), font: glyph_count });
         }
         // Table::parse has checked the sizes, head_units the units.
-        let scale = header.scale(units_per_em).ok_or(Error::UnitsPerEm(units_per_em))?;
+        let scale =
+            header.scale(units_per_em).ok_or(Error::UnitsPerEm(units_per_em))?.with_whole_sizes(whole_sizes);
         let font = model::Font::new(data.clone(), index).ok_or(Error::NotAFont)?;
         Ok(Self(Arc::new(Inner { font, data, table, header, scale, glyph_count })))
     }
@@ -225,6 +228,12 @@ pub fn head_units(font: &FontRef<'_>) -> Result<u16, Error> {
         units @ 16..=16384 => Ok(units),
         units => Err(Error::UnitsPerEm(units)),
     }
+}
+
+/// Whether hinted sizes are whole along x too, which the font's header says.
+fn has_whole_sizes(font: &FontRef<'_>) -> Result<bool, Error> {
+    let head = font.head().map_err(|_| unreadable(font, b"head"))?;
+    Ok(head.flags().contains(Flags::FORCE_INTEGER_PPEM))
 }
 
 fn malformed(tag: &[u8; 4]) -> Error {

@@ -12,7 +12,11 @@ use nfr_convert::{Conversion, Options, Quality, convert};
 use proptest::prelude::*;
 use read_fonts::types::Tag;
 use read_fonts::{FontRef, TableProvider};
-use samples::{Silent, font, gids, with_changed_outline};
+use samples::{Silent, font, gids, with_changed_outline, with_whole_sizes};
+use skrifa::MetadataProvider;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::pen::ControlBoundsPen;
+use skrifa::outline::{DrawSettings, Engine, HintingInstance, HintingOptions, SmoothMode};
 use write_fonts::FontBuilder;
 
 const FONTS: [&str; 3] = ["LiberationSans-Regular", "LiberationSerif-Regular", "DejaVuSans"];
@@ -123,6 +127,41 @@ fn a_size_is_drawn_alike_after_smaller_and_after_larger_ones() {
         let warm = sizes.map(|ppem| rasterizer.render(gid.into(), ppem).unwrap());
         let fresh = sizes.map(|ppem| Rasterizer::new(&font).render(gid.into(), ppem).unwrap());
         assert!(warm == fresh);
+    }
+}
+
+/// The columns of pixels that skrifa's hinted outline of a glyph reaches into, for smooth text.
+fn hinted_columns(data: &[u8], gid: u16, ppem: f32) -> Option<[i32; 2]> {
+    let font = FontRef::new(data).unwrap();
+    let mode = SmoothMode::Normal;
+    let target =
+        skrifa::outline::Target::Smooth { mode, symmetric_rendering: true, preserve_linear_metrics: true };
+    let options = HintingOptions { engine: Engine::Interpreter, target };
+    let outlines = font.outline_glyphs();
+    let hinting = HintingInstance::new(&outlines, Size::new(ppem), LocationRef::default(), options).unwrap();
+    let mut pen = ControlBoundsPen::new();
+    outlines.get(gid.into()).unwrap().draw(DrawSettings::hinted(&hinting, false), &mut pen).unwrap();
+    let bounds = pen.bounding_box()?;
+    Some([bounds.x_min.floor() as i32, bounds.x_max.ceil() as i32])
+}
+
+#[test]
+fn fractional_sizes_are_as_wide_as_with_hints() {
+    // With fractional sizes, letters that hinting does not move in x: others have the width of the nearest whole size.
+    for (name, text, whole) in
+        FONTS.into_iter().flat_map(|name| [(name, "HIl", false), (name, "HIlEXow0%", true)])
+    {
+        let data = with_whole_sizes(&font(name), whole);
+        let font = Font::new(converted(&data, text, Target::Smooth, 50.0).font).unwrap();
+        let mut rasterizer = Rasterizer::new(&font);
+        for gid in gids(&data, text) {
+            for ppem in [8.5, 12.4, 12.6, 17.25, 33.3, 44.5, 63.75] {
+                let placement = rasterizer.render(gid.into(), ppem).unwrap().placement;
+                let columns = [placement.left, placement.left + placement.width as i32];
+                let hinted = hinted_columns(&data, gid, ppem);
+                assert_eq!(Some(columns), hinted, "{name}, whole: {whole}, glyph {gid}, {ppem} ppem");
+            }
+        }
     }
 }
 

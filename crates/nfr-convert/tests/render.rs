@@ -11,14 +11,15 @@ use nfr_convert::compare::metrics::Sums;
 use nfr_convert::teacher::Teacher;
 use read_fonts::FontRef;
 
-use samples::{converted, font, gid};
+use samples::{converted, font, gid, with_whole_sizes};
 
 /// Glyphs with round, straight, slanted and separate parts, and a blank one.
 const TEXT: &str = "agRiw%. ";
 /// Enough for the deformation to take part.
 const STEPS: usize = 40;
 
-static ORIGINAL: LazyLock<Vec<u8>> = LazyLock::new(|| font("LiberationSans-Regular"));
+static ORIGINAL: LazyLock<Vec<u8>> =
+    LazyLock::new(|| with_whole_sizes(&font("LiberationSans-Regular"), false));
 static CONVERTED: LazyLock<Vec<u8>> = LazyLock::new(|| converted(&ORIGINAL, TEXT, STEPS).font);
 
 /// A glyph of a font, decoded.

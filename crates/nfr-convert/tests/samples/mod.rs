@@ -83,6 +83,13 @@ pub(crate) fn table(data: &[u8], tag: &[u8; 4]) -> Vec<u8> {
     FontRef::new(data).unwrap().table_data(Tag::new(tag)).unwrap().as_bytes().to_vec()
 }
 
+/// The font with fractional sizes along x where it is hinted, or with whole ones: without bit 3 of `head.flags`, or with it.
+pub(crate) fn with_whole_sizes(data: &[u8], whole: bool) -> Vec<u8> {
+    let mut head = table(data, b"head");
+    head[17] = head[17] & !8 | u8::from(whole) << 3;
+    with_tables(data, &[(b"head", head)])
+}
+
 /// The font with another byte in its table `glyf`.
 pub(crate) fn with_changed_outline(data: &[u8], gid: u16) -> Vec<u8> {
     let mut glyf = table(data, b"glyf");
