@@ -1,5 +1,6 @@
 //! Coding of an axis's tracks: which levels of the outline have one, which points belong to it, and where its moves come from.
 
+use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -28,33 +29,31 @@ struct Level {
 
 /// The numbers of an outline's points by their coordinates along an axis, and its levels, ascending.
 fn levels(points: &OutlinePoints, axis: usize) -> (Vec<u16>, Vec<Level>) {
-    let coordinates = &points.coordinates[axis];
-    let mut order: Vec<u16> = (0..points.len() as u16).collect();
-    order.sort_unstable_by_key(|point| (coordinates[usize::from(*point)], *point));
-    let mut levels: Vec<Level> = Vec::with_capacity(points.len());
-    for (at, point) in order.iter().map(|point| usize::from(*point)).enumerate() {
-        let units = coordinates[point];
+    // Sorted as numbers: coordinates from 0 up, then points.
+    let key = |(point, units): (u16, &i16)| u32::from(*units as u16 ^ 0x8000) << 16 | u32::from(point);
+    let mut keys: Vec<u32> = (0u16..).zip(&points.coordinates[axis]).map(key).collect();
+    keys.sort_unstable();
+    let mut order = Vec::with_capacity(keys.len());
+    let mut levels: Vec<Level> = Vec::with_capacity(keys.len());
+    let mut level_of = vec![0u16; keys.len()];
+    for (at, key) in keys.iter().enumerate() {
+        let (units, point) = (((key >> 16) ^ 0x8000) as i16, *key as u16);
         if levels.last().is_none_or(|level| level.units != units) {
             levels.push(Level { units, points: at..at, extreme: 0, on_curve: 0, is_flat: false });
         }
-        if let Some(level) = levels.last_mut() {
-            level.points.end = at + 1;
-            level.on_curve += usize::from(points.on_curve[point]);
-        }
+        let number = levels.len() - 1;
+        levels[number].points.end = at + 1;
+        levels[number].on_curve += usize::from(points.on_curve[usize::from(point)]);
+        level_of[usize::from(point)] = number as u16;
+        order.push(point);
     }
-    let mut find = |units: i16, change: &dyn Fn(&mut Level)| {
-        if let Ok(at) = levels.binary_search_by_key(&units, |level| level.units) {
-            change(&mut levels[at]);
-        }
-    };
-    for contour in points.contours() {
-        let Some(own) = coordinates.get(contour) else { continue };
+    for own in points.contours().filter_map(|contour| level_of.get(contour)) {
         for extreme in [own.iter().min(), own.iter().max()].into_iter().flatten() {
-            find(*extreme, &|level| level.extreme = 1);
+            levels[usize::from(*extreme)].extreme = 1;
         }
         for (a, b) in own.iter().zip(own.iter().cycle().skip(1)) {
             if a == b && own.len() > 1 {
-                find(*a, &|level| level.is_flat = true);
+                levels[usize::from(*a)].is_flat = true;
             }
         }
     }
