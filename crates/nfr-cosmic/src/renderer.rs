@@ -34,11 +34,14 @@ impl<C: Canvas> cosmic_text::Renderer for NeuralRenderer<'_, C> {
     fn glyph(&mut self, glyph: PhysicalGlyph, color: Color) {
         let Self { neural, fonts, cache, canvas } = self;
         let key = glyph.cache_key;
-        if !cache.image_cache.contains_key(&key) {
-            let image = neural.image(fonts, key).or_else(|| cache.get_image_uncached(fonts, key));
-            cache.image_cache.insert(key, image);
-        }
-        if let Some(Some(image)) = cache.image_cache.get(&key) {
+        let image = match cache.image_cache.get(&key) {
+            Some(image) => image,
+            None => {
+                let image = neural.image(fonts, key).or_else(|| cache.get_image_uncached(fonts, key));
+                cache.image_cache.entry(key).or_insert(image)
+            }
+        };
+        if let Some(image) = image {
             show(*canvas, &glyph, image, color);
         }
     }
