@@ -110,7 +110,9 @@ fn triangle(image: &mut ColorImage, clip: Rect, mut corners: [Vertex; 3], textur
         for x in bounds.left().floor() as usize..bounds.right().ceil().max(0.0) as usize {
             let at = pos2(x as f32 + 0.5, y as f32 + 0.5);
             let weights = [(b.pos, c.pos), (c.pos, a.pos), (a.pos, b.pos)].map(|(from, to)| {
-                let weight = cross(from, to, at);
+                // Rounded alike for the triangles on both sides.
+                let ascending = (from.x, from.y) < (to.x, to.y);
+                let weight = if ascending { cross(from, to, at) } else { -cross(to, from, at) };
                 if weight > 0.0 || (weight == 0.0 && owned(from, to)) { weight / area } else { -1.0 }
             });
             if area > 0.0 && clip.contains(at) && weights.iter().all(|weight| *weight >= 0.0) {
