@@ -9,6 +9,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use egui::{Color32, ColorImage, FontFamily, FontId, RichText, Theme, Ui};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use nfr::{Font, Target};
 use shared::canvas::Screen;
 use shared::fonts;
@@ -108,5 +109,7 @@ fn write(pictures: &[ColorImage], out: &str) -> Result<(), Box<dyn Error>> {
         let [r, g, b, _] = pictures[x / width][(x % width / ZOOM, y / ZOOM)].to_array();
         image::Rgb([r, g, b])
     });
-    Ok(image.save(out)?)
+    let file = std::io::BufWriter::new(std::fs::File::create(out)?);
+    let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::NoFilter);
+    Ok(image.write_with_encoder(encoder)?)
 }

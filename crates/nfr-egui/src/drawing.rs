@@ -164,6 +164,36 @@ mod tests {
         assert!(!drawing.rasterizer.is_poisoned());
     }
 
+    static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+    struct Log;
+
+    impl log::Log for Log {
+        fn enabled(&self, _: &log::Metadata<'_>) -> bool {
+            true
+        }
+
+        fn log(&self, record: &log::Record<'_>) {
+            if record.level() == log::Level::Warn {
+                MESSAGES.lock().unwrap().push(record.args().to_string());
+            }
+        }
+
+        fn flush(&self) {}
+    }
+
+    #[test]
+    fn only_the_first_error_of_a_font_is_logged() {
+        log::set_logger(&Log).unwrap();
+        log::set_max_level(log::LevelFilter::Warn);
+        let drawing = Drawing::new(&Font::new(bytes()).unwrap());
+        drawing.report(Error::StaleModel(7));
+        drawing.report(Error::StaleModel(8));
+        assert_eq!(drawing.last_error(), Some(Error::StaleModel(8)));
+        let messages = MESSAGES.lock().unwrap();
+        assert!(matches!(messages.as_slice(), [one] if one.contains("glyph 7")), "{messages:?}");
+    }
+
     #[test]
     fn only_one_opening_of_a_file_is_the_same_font() {
         let font = Font::new(bytes()).unwrap();

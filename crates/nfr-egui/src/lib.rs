@@ -1,4 +1,4 @@
-//! Crisp small text in [egui](egui): one call lets an [`nfr::Font`] draw the glyphs of a font family.
+//! Crisp small text in [egui]: one call lets an [`nfr::Font`] draw the glyphs of a font family.
 //!
 //! ```no_run
 //! # fn glue(ctx: &egui::Context) -> Result<(), Box<dyn std::error::Error>> {
@@ -34,3 +34,8 @@ pub fn exact_coverage(ctx: &egui::Context) {
         style.visuals.text_options.color_transfer_function = egui::epaint::FontColorTransferFunction::Off;
     });
 }
+
+/// Runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -139,8 +139,8 @@ fn stems_of_a_narrow_letter_are_not_smeared_over_two_pixels() {
 
 #[test]
 fn what_the_font_cannot_draw_is_drawn_by_eguis_fonts() {
-    // No model; a letter with a sign above; an invisible hyphen; Arabic, which has to be shaped; a tab.
-    for text in ["é", "e\u{301}", "\u{ad}", "عربي", "\t"] {
+    // No model; a letter with a sign above, and with two; an invisible hyphen; Arabic, which has to be shaped; a tab.
+    for text in ["é", "e\u{301}", "e\u{301}\u{302}", "\u{ad}", "عربي", "\t"] {
         let ours = label(&mut with_font(&MONO), text, 13.0);
         let eguis = label(&mut screen(1.0), text, 13.0);
         assert_eq!(differing(&ours.image, &eguis.image), 0, "{text:?}");
@@ -150,6 +150,17 @@ fn what_the_font_cannot_draw_is_drawn_by_eguis_fonts() {
     let ours = label(&mut with_font(&MONO), "aé", 13.0);
     let eguis = label(&mut screen(1.0), "aé", 13.0);
     assert_ne!(differing(&ours.image, &eguis.image), 0);
+}
+
+#[test]
+fn the_converted_font_serves_as_eguis_own_too() {
+    let mut screen = Screen::new(SIZE, 1.0, MONO.data());
+    screen.ctx.set_theme(Theme::Dark);
+    nfr_egui::exact_coverage(&screen.ctx);
+    nfr_egui::install(&screen.ctx, FontFamily::Proportional, &MONO);
+    let original = label(&mut with_font(&MONO), TEXT, 12.0);
+    assert_eq!(differing(&label(&mut screen, TEXT, 12.0).image, &original.image), 0);
+    assert!(ink(&label(&mut screen, "é", 12.0).image) > 20);
 }
 
 #[test]
