@@ -122,7 +122,8 @@ fn is_damage(error: &Error) -> bool {
 fn converted(bitmap: &Bitmap) -> GlyphBitmap {
     let Placement { left, top, width, height } = bitmap.placement;
     let image = if bitmap.pixels.is_empty() {
-        // egui takes an empty image for "not drawn", and would give a space the width that it has in another font.
+        // egui takes an empty image for "not drawn". A space would then have the width that it has in another font, a fraction of a
+        // pixel with it, and the gaps between words would be uneven.
         ColorImage::filled([1, 1], Color32::TRANSPARENT)
     } else {
         let pixels = bitmap.pixels.iter().map(|coverage| Color32::from_white_alpha(*coverage)).collect();

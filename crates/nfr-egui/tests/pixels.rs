@@ -153,6 +153,16 @@ fn what_the_font_cannot_draw_is_drawn_by_eguis_fonts() {
 }
 
 #[test]
+fn a_word_that_is_written_from_the_right_is_left_to_eguis_shaper() {
+    let text = "שלום";
+    let hebrew = Font::new(fonts::converted(&ORIGINAL, text, Target::Mono).unwrap()).unwrap();
+    assert!(text.chars().all(|character| hebrew.has_model(hebrew.glyph_for_char(character).unwrap())));
+    let ours = label(&mut with_font(&hebrew), text, 13.0);
+    assert_eq!(differing(&ours.image, &label(&mut screen(1.0), text, 13.0).image), 0);
+    assert!(ink(&ours.image) > 50);
+}
+
+#[test]
 fn the_converted_font_serves_as_eguis_own_too() {
     let mut screen = Screen::new(SIZE, 1.0, MONO.data());
     screen.ctx.set_theme(Theme::Dark);
