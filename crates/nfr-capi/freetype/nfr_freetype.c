@@ -143,20 +143,19 @@ static int nfr_moved(const FT_Outline *loaded, const FT_Outline *now, FT_Vector 
            memcmp(now->contours, loaded->contours, (size_t)now->n_contours * sizeof *now->contours) == 0;
 }
 
-/* Without points, as with dropped outlines, a transformation does not show in them. */
-static int nfr_is_upright(FT_GlyphSlot slot)
+/* What FT_Set_Transform has set: the move, and whether there is nothing more than that. */
+static int nfr_is_upright(FT_Face face, FT_Vector *delta)
 {
+    delta->x = delta->y = 0;
 #if FREETYPE_MAJOR > 2 || FREETYPE_MINOR >= 11
     FT_Matrix matrix;
 
-    if (slot->outline.n_points == 0) {
-        FT_Get_Transform(slot->face, &matrix, NULL);
-        return matrix.xx == 0x10000L && matrix.yy == 0x10000L && matrix.xy == 0 && matrix.yx == 0;
-    }
+    FT_Get_Transform(face, &matrix, delta);
+    return matrix.xx == 0x10000L && matrix.yy == 0x10000L && matrix.xy == 0 && matrix.yx == 0;
 #else
-    (void)slot;
-#endif
+    (void)face;
     return 1;
+#endif
 }
 
 static int nfr_same_metrics(const FT_Glyph_Metrics *a, const FT_Glyph_Metrics *b)
@@ -182,36 +181,58 @@ static int nfr_keep_outline(FT_GlyphSlot slot, FT_Outline *kept)
 }
 
 /*
+ * Loads the glyph in each way until its metrics and outline are those that the slot had. Returns the index of the way, or
+ * NFR_LOADS. A way that needs no move other than FT_Set_Transform's goes before one that does: with different hinting
+ * a glyph as simple as T may differ by a move only.
+ */
+static size_t nfr_find_load(nfr_face *held, FT_GlyphSlot slot, const FT_GlyphSlotRec *before, FT_Vector *move)
+{
+    FT_Vector delta, found_move;
+    size_t i, load, found = NFR_LOADS;
+    int upright = nfr_is_upright(slot->face, &delta);
+
+    /* Without points, as where outlines were dropped, a transformation does not show in them. */
+    if (!upright && before->outline.n_points == 0)
+        return NFR_LOADS;
+    for (i = 0; i < NFR_LOADS; i++) {
+        load = (held->load + i) % NFR_LOADS;
+        if (FT_Load_Glyph(slot->face, before->glyph_index, nfr_loads[load] | FT_LOAD_NO_BITMAP | FT_LOAD_IGNORE_TRANSFORM))
+            return NFR_LOADS;
+        if (slot->format != FT_GLYPH_FORMAT_OUTLINE || !nfr_same_metrics(&slot->metrics, &before->metrics) ||
+            !nfr_moved(&slot->outline, &held->outline, &found_move))
+            continue;
+        if (found == NFR_LOADS)
+            found = load, *move = found_move;
+        if ((found_move.x == 0 && found_move.y == 0) || (found_move.x == delta.x && found_move.y == delta.y)) {
+            *move = found_move;
+            return load;
+        }
+    }
+    return found;
+}
+
+/*
  * Finds out how the glyph in the slot was loaded, by loading it again: FreeType does not tell a renderer, and whether a
  * program has changed the outline since does not show otherwise. Returns whether it is hinted and unchanged but for a
  * move. The slot is as before afterwards; its outline is in our memory, which lives as long as the slot.
  */
 static int nfr_is_hinted(nfr_face *held, FT_GlyphSlot slot, FT_Vector *move)
 {
-    FT_Face face = slot->face;
     FT_GlyphSlotRec before = *slot;
-    size_t i, load, found = NFR_LOADS;
-    int flags = slot->outline.flags;
+    size_t load;
 
-    if (!nfr_is_upright(slot) || !nfr_keep_outline(slot, &held->outline))
+    if (!nfr_keep_outline(slot, &held->outline))
         return 0;
-    for (i = 0; i < NFR_LOADS && found == NFR_LOADS; i++) {
-        load = (held->load + i) % NFR_LOADS;
-        if (FT_Load_Glyph(face, before.glyph_index, nfr_loads[load] | FT_LOAD_NO_BITMAP | FT_LOAD_IGNORE_TRANSFORM))
-            break;
-        if (slot->format == FT_GLYPH_FORMAT_OUTLINE && nfr_same_metrics(&slot->metrics, &before.metrics) &&
-            nfr_moved(&slot->outline, &held->outline, move))
-            found = load;
-    }
+    load = nfr_find_load(held, slot, &before, move);
     /* Loading has freed a bitmap of the slot's. */
     memset(&before.bitmap, 0, sizeof before.bitmap);
     *slot = before;
     slot->outline = held->outline;
-    slot->outline.flags = flags & ~FT_OUTLINE_OWNER;
-    if (found == NFR_LOADS)
+    slot->outline.flags = before.outline.flags & ~FT_OUTLINE_OWNER;
+    if (load == NFR_LOADS)
         return 0;
-    held->load = found;
-    return nfr_loads[found] != FT_LOAD_NO_HINTING;
+    held->load = load;
+    return nfr_loads[load] != FT_LOAD_NO_HINTING;
 }
 
 /* Whole pixels of a move in 1/64 pixel; `part` receives the rest in pixels, from 0 to below 1. */

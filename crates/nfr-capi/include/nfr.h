@@ -76,6 +76,16 @@ typedef enum {
     NFR_TARGET_LCD = 3,
 } nfr_target;
 
+// What is drawn for a glyph that the font has, but no model of. A damaged model is an error in any case.
+typedef enum {
+    // Nothing, and the call returns NFR_MISSING_MODEL, so that the application draws the glyph by other means.
+    NFR_MISSING_MODEL_ERROR = 0,
+    // An empty bitmap.
+    NFR_MISSING_MODEL_BLANK = 1,
+    // The glyph's plain outline, without hinting.
+    NFR_MISSING_MODEL_OUTLINE = 2,
+} nfr_missing_model;
+
 // A font with models. Threads may use one font at the same time.
 typedef struct nfr_font nfr_font;
 
