@@ -41,7 +41,6 @@ static const FT_Int32 nfr_loads[] = {
 /* The models of a face: in the generic of its glyph slot, whose finalizer frees it before the face is closed. */
 typedef struct nfr_face_ {
     nfr_rasterizer *rasterizer; /* NULL if the font cannot be opened. */
-    nfr_target target;
     size_t load;        /* How the last glyph was loaded: an index of nfr_loads. */
     FT_Outline outline; /* What the slot held when it was to be rendered. */
     nfr_status status;  /* The first defect. */
@@ -110,7 +109,6 @@ static nfr_face *nfr_face_of(FT_GlyphSlot slot)
     if (!held)
         return NULL;
     status = nfr_open(slot->face, &font);
-    held->target = nfr_font_target(font);
     if (status == NFR_OK)
         status = nfr_rasterizer_new(font, &held->rasterizer);
     nfr_font_free(font);
@@ -244,40 +242,22 @@ static FT_Int nfr_whole(FT_Pos move, float *part)
     return (FT_Int)((move - rest) / 64);
 }
 
-/* Takes coverage of a half and more as ink, 8 pixels a byte. Returns NULL if there is no memory. */
-static unsigned char *nfr_bits(const unsigned char *pixels, const nfr_placement *placement, unsigned stride)
-{
-    unsigned char *bits = (unsigned char *)calloc((size_t)stride * placement->height + 1, 1);
-    unsigned x, y;
-
-    for (y = 0; bits && y < placement->height; y++)
-        for (x = 0; x < placement->width; x++)
-            if (pixels[(size_t)y * placement->width + x] >= 128)
-                bits[(size_t)y * stride + x / 8] |= (unsigned char)(0x80 >> (x % 8));
-    return bits;
-}
-
 /* Gives the slot a copy of the bitmap in FreeType's own memory, so that it lives as any other. */
-static FT_Error nfr_fill_slot(FT_GlyphSlot slot, const unsigned char *pixels, const nfr_placement *placement, int mono)
+static FT_Error nfr_fill_slot(FT_GlyphSlot slot, const unsigned char *pixels, const nfr_placement *placement)
 {
-    unsigned stride = mono ? (placement->width + 15) / 16 * 2 : placement->width;
-    unsigned char *bits = mono ? nfr_bits(pixels, placement, stride) : NULL;
     FT_Error error;
 
-    if (mono && !bits)
-        return FT_Err_Out_Of_Memory;
     FT_Bitmap_Init(&slot->bitmap);
     slot->bitmap.width = placement->width;
     slot->bitmap.rows = placement->height;
-    slot->bitmap.pitch = (int)stride;
-    slot->bitmap.num_grays = mono ? 2 : 256;
-    slot->bitmap.pixel_mode = mono ? FT_PIXEL_MODE_MONO : FT_PIXEL_MODE_GRAY;
+    slot->bitmap.pitch = (int)placement->width;
+    slot->bitmap.num_grays = 256;
+    slot->bitmap.pixel_mode = FT_PIXEL_MODE_GRAY;
     /* FreeType only reads what it copies. */
     if (placement->width && placement->height)
-        slot->bitmap.buffer = mono ? bits : (unsigned char *)pixels;
+        slot->bitmap.buffer = (unsigned char *)pixels;
     slot->format = FT_GLYPH_FORMAT_BITMAP;
     error = FT_GlyphSlot_Own_Bitmap(slot);
-    free(bits);
     if (error) {
         FT_Bitmap_Init(&slot->bitmap);
         slot->format = FT_GLYPH_FORMAT_OUTLINE;
@@ -302,7 +282,7 @@ static void nfr_set_advance(nfr_face *held, FT_GlyphSlot slot, float ppem)
     slot->lsb_delta = slot->rsb_delta = 0;
 }
 
-static FT_Error nfr_draw(nfr_face *held, FT_GlyphSlot slot, float ppem, const FT_Vector *move, int mono)
+static FT_Error nfr_draw(nfr_face *held, FT_GlyphSlot slot, float ppem, const FT_Vector *move)
 {
     nfr_placement placement;
     const unsigned char *pixels;
@@ -318,7 +298,7 @@ static FT_Error nfr_draw(nfr_face *held, FT_GlyphSlot slot, float ppem, const FT
         placement.left += left;
         placement.top += top;
     }
-    if (nfr_fill_slot(slot, pixels, &placement, mono))
+    if (nfr_fill_slot(slot, pixels, &placement))
         return FT_Err_Cannot_Render_Glyph;
     nfr_set_advance(held, slot, ppem);
     return FT_Err_Ok;
@@ -339,13 +319,14 @@ static FT_Error nfr_render(FT_Renderer renderer, FT_GlyphSlot slot, FT_Render_Mo
     /* FT_Glyph_To_Bitmap has a slot without a face. */
     if (!face || slot != face->glyph || slot->format != FT_GLYPH_FORMAT_OUTLINE || !face->size || origin)
         return FT_Err_Cannot_Render_Glyph;
-    if (mode != FT_RENDER_MODE_NORMAL && mode != FT_RENDER_MODE_LIGHT && mode != FT_RENDER_MODE_MONO)
+    /* Black and white takes the outline: half-covered pixels of thin strokes would leave gaps. */
+    if (mode != FT_RENDER_MODE_NORMAL && mode != FT_RENDER_MODE_LIGHT)
         return FT_Err_Cannot_Render_Glyph;
     size = &face->size->metrics;
     if (size->x_scale != size->y_scale || FT_HAS_MULTIPLE_MASTERS(face))
         return FT_Err_Cannot_Render_Glyph;
     held = nfr_face_of(slot);
-    if (!held || !held->rasterizer || (mode == FT_RENDER_MODE_MONO && held->target != NFR_TARGET_MONO))
+    if (!held || !held->rasterizer)
         return FT_Err_Cannot_Render_Glyph;
     /* The size in 1/64 pixel, of which the scale was made. */
     ppem = (float)FT_MulFix(face->units_per_EM, size->x_scale) / 64.0f;
@@ -354,7 +335,7 @@ static FT_Error nfr_render(FT_Renderer renderer, FT_GlyphSlot slot, FT_Render_Mo
     nfr_note(held, status);
     if (status != NFR_OK || !nfr_is_hinted(held, slot, &move))
         return FT_Err_Cannot_Render_Glyph;
-    return nfr_draw(held, slot, ppem, &move, mode == FT_RENDER_MODE_MONO);
+    return nfr_draw(held, slot, ppem, &move);
 }
 
 /* FreeType lets the first renderer transform outlines for FT_Set_Transform. */

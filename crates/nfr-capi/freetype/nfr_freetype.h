@@ -8,14 +8,16 @@
  * Compile nfr_freetype.c into the program and link libnfr and FreeType.
  *
  * What nfr draws: glyphs that FT_Load_Glyph or FT_Load_Char loads with hinting (FT_LOAD_DEFAULT and all FT_LOAD_TARGET_*)
- * and FT_LOAD_RENDER or FT_Render_Glyph renders with FT_RENDER_MODE_NORMAL or FT_RENDER_MODE_LIGHT; with
- * FT_RENDER_MODE_MONO too if the font's models are those of the target mono. Outlines may have been moved, by
- * FT_Set_Transform or FT_Outline_Translate: subpixel offsets.
+ * and FT_LOAD_RENDER or FT_Render_Glyph renders with FT_RENDER_MODE_NORMAL or FT_RENDER_MODE_LIGHT. Outlines may have been
+ * moved, by FT_Set_Transform or FT_Outline_Translate: subpixel offsets.
  *
- * What FreeType draws as before: glyphs without a model and with a damaged or outdated one, other fonts, other modes,
- * glyphs that were loaded with FT_LOAD_NO_HINTING, sizes that differ in x and y, outlines that were changed
- * (FT_GlyphSlot_Embolden, rotation, stroking), FT_Glyph_To_Bitmap, FT_Outline_Get_Bitmap, and slots whose generic.data the
- * program uses itself: the module keeps its models in face->glyph->generic, and frees them with the face.
+ * What FreeType draws as before: glyphs without a model and with a damaged or outdated one, other fonts, other modes
+ * (FT_RENDER_MODE_MONO too), glyphs that were loaded with FT_LOAD_NO_HINTING, sizes that differ in x and y, outlines that
+ * were changed (FT_GlyphSlot_Embolden, rotation, stroking), FT_Glyph_To_Bitmap, FT_Outline_Get_Bitmap, and slots whose
+ * generic.data the program uses itself: the module keeps its models in face->glyph->generic, and frees them with the face.
+ *
+ * FreeType does not tell a renderer how a glyph was loaded. The module finds out by loading it again, mostly once; an outline
+ * that was changed takes seven loads, before FreeType draws it.
  *
  * The slot afterwards: bitmap, bitmap_left, bitmap_top as always, the bitmap in FreeType's memory. The advance width becomes
  * the hinted one (slot->advance.x and metrics.horiAdvance, lsb_delta and rsb_delta are 0), unless the layout is vertical
