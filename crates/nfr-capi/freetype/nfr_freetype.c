@@ -62,6 +62,8 @@ static void nfr_face_done(void *object)
 
     slot->generic.data = NULL;
     slot->generic.finalizer = NULL;
+    if (held->outline.points && slot->outline.points == held->outline.points)
+        memset(&slot->outline, 0, sizeof slot->outline);
     nfr_rasterizer_free(held->rasterizer);
     FT_Outline_Done(slot->library, &held->outline);
     free(held);

@@ -175,10 +175,12 @@ fn settings_change_what_is_drawn() {
 fn borrowed_bytes_are_released_once_after_the_last_use_and_on_failure() {
     static RELEASED: AtomicUsize = AtomicUsize::new(0);
     unsafe extern "C" fn release(user: *mut c_void) {
-        RELEASED.fetch_add(user as usize, Ordering::SeqCst);
+        // SAFETY: the number that the test gave.
+        RELEASED.fetch_add(unsafe { *user.cast::<usize>() }, Ordering::SeqCst);
     }
     let released = || RELEASED.load(Ordering::SeqCst);
-    let one = 1 as *mut c_void;
+    let mut count = 1usize;
+    let one = (&raw mut count).cast::<c_void>();
     let (mut font, mut rasterizer) = (null_mut(), null_mut());
     // SAFETY: bytes that outlive all of it, handles that are open, and pointers to values of this function.
     unsafe {

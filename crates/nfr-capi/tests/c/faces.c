@@ -26,6 +26,20 @@ static void draw(FT_Face face, nfr_rasterizer *rasterizer)
     CHECK(is_ours(face->glyph, rasterizer, 14, 0, 0));
 }
 
+/* A program that takes the generic for itself loses the models and not what is in the slot. */
+static void check_generic(bytes sans, nfr_rasterizer *rasterizer)
+{
+    FT_Library library = library_with(1);
+    FT_Face face = face_of(library, sans);
+
+    draw(face, rasterizer);
+    face->glyph->generic.finalizer(face->glyph);
+    CHECK(nfr_freetype_status(face, NULL) == NFR_NO_MODELS && is_ours(face->glyph, rasterizer, 14, 0, 0));
+    FT_Outline_Translate(&face->glyph->outline, 1, 1);
+    draw(face, rasterizer);
+    FT_Done_FreeType(library);
+}
+
 /* From a file, and from a stream that is not in memory. */
 static void check_sources(bytes sans, const char *folder, nfr_rasterizer *rasterizer)
 {
@@ -71,6 +85,7 @@ void check_lifetimes(bytes sans, bytes other, const char *folder)
     int i;
 
     check_sources(sans, folder, rasterizer);
+    check_generic(sans, rasterizer);
     /* A face may get the memory of one that was closed. */
     for (i = 0; i < 20; i++) {
         a = face_of(library, i % 2 ? other : sans);

@@ -64,6 +64,25 @@ static void check_moves(bytes sans)
     FT_Done_FreeType(library);
 }
 
+/* Without an outline a glyph is drawn from its model, unless a transformation is asked for: FreeType draws nothing then. */
+static void check_dropped(bytes dropped)
+{
+    FT_Library library = library_with(1);
+    FT_Face face = face_of(library, dropped);
+    FT_Matrix slant = {0x10000L, 0x3000L, 0, 0x10000L};
+    nfr_font *font;
+    nfr_rasterizer *rasterizer = open_rasterizer(dropped, &font);
+
+    CHECK(nfr_font_outlines_dropped(font));
+    CHECK(FT_Load_Char(face, 'a', NORMAL) == 0 && is_ours(face->glyph, rasterizer, 14, 0, 0));
+    CHECK(face->glyph->bitmap.width > 4);
+    FT_Set_Transform(face, &slant, NULL);
+    CHECK(FT_Load_Char(face, 'a', NORMAL) == 0 && face->glyph->bitmap.width == 0);
+    nfr_rasterizer_free(rasterizer);
+    nfr_font_free(font);
+    FT_Done_FreeType(library);
+}
+
 /* Loads and renders in some way; the number of ways is WAYS. */
 #define WAYS 12
 static void render_in_way(FT_Face face, FT_ULong c, int way)
@@ -210,10 +229,11 @@ int main(int argc, char **argv)
     bytes sans = read_file(folder, "sans.ttf"), other = read_file(folder, "other.ttf");
     bytes plain = read_file(folder, "plain.ttf"), partial = read_file(folder, "partial.ttf");
     bytes stale = read_file(folder, "stale.ttf"), damaged = read_file(folder, "damaged.ttf");
-    bytes mono = read_file(folder, "mono.ttf");
+    bytes mono = read_file(folder, "mono.ttf"), dropped = read_file(folder, "dropped.ttf");
 
     check_pixels(sans, quick ? 13 : 1);
     check_moves(sans);
+    check_dropped(dropped);
     check_fallback(sans, "gRi", 1, NFR_OK);
     check_fallback(partial, "Q&", 0, NFR_OK);
     check_fallback(other, "gR", 0, NFR_NO_MODELS);
@@ -227,6 +247,6 @@ int main(int argc, char **argv)
     check_lifetimes(sans, other, folder);
     check_threads(sans);
     free(sans.data), free(other.data), free(plain.data), free(partial.data), free(stale.data), free(damaged.data);
-    free(mono.data);
+    free(mono.data), free(dropped.data);
     return 0;
 }
