@@ -13,7 +13,7 @@ static void check_pixels(bytes sans, int step)
     const char *message;
     unsigned long compared = 0;
     float advance;
-    int ppem, c;
+    int ppem, c, version[3];
     size_t i;
 
     CHECK(nfr_freetype_add(library) == 0 && nfr_freetype_add(NULL) != 0);
@@ -33,7 +33,8 @@ static void check_pixels(bytes sans, int step)
         }
     }
     CHECK(nfr_freetype_status(face, &message) == NFR_OK && message[0] == 0);
-    printf("module: %lu bitmaps, 0 differ\n", compared);
+    FT_Library_Version(library, &version[0], &version[1], &version[2]);
+    printf("FreeType %d.%d.%d: %lu bitmaps, 0 differ\n", version[0], version[1], version[2], compared);
     nfr_rasterizer_free(rasterizer);
     nfr_font_free(font);
     FT_Done_Face(face);
