@@ -47,12 +47,18 @@ typedef struct nfr_face_ {
     char message[256];
 } nfr_face;
 
-static void nfr_note(nfr_face *held, nfr_status status)
+/* Remembers the first defect; `message` is NULL for that of the last call. */
+static void nfr_note(nfr_face *held, nfr_status status, const char *message)
 {
-    if (!nfr_is_defect(status) || nfr_is_defect(held->status))
-        return;
-    held->status = status;
-    strncpy(held->message, nfr_last_error(), sizeof held->message - 1);
+    if (nfr_is_defect(status) && !nfr_is_defect(held->status)) {
+        held->status = status;
+        strncpy(held->message, message ? message : nfr_last_error(), sizeof held->message - 1);
+    }
+    /* What it holds is in doubt. */
+    if (status == NFR_INTERNAL) {
+        nfr_rasterizer_free(held->rasterizer);
+        held->rasterizer = NULL;
+    }
 }
 
 static void nfr_face_done(void *object)
@@ -69,8 +75,11 @@ static void nfr_face_done(void *object)
     free(held);
 }
 
-/* Opens the file of a face, without a copy where it lies in memory as long as the face is open. */
-static nfr_status nfr_open(FT_Face face, nfr_font **font)
+/*
+ * Opens the file of a face, without a copy where it lies in memory as long as the face is open. `message` is set if it was
+ * not the library that failed.
+ */
+static nfr_status nfr_open(FT_Face face, nfr_font **font, const char **message)
 {
     FT_Stream stream = face->stream;
     FT_UInt32 index = (FT_UInt32)face->face_index & 0xFFFF;
@@ -78,18 +87,23 @@ static nfr_status nfr_open(FT_Face face, nfr_font **font)
     FT_Byte *copy;
 
     *font = NULL;
+    *message = NULL;
     if (stream && stream->base && !stream->read)
         return nfr_font_new_borrowed(stream->base, stream->size, index, NULL, NULL, font);
-    /* The tag 0 stands for the whole file. */
+    *message = "FreeType cannot read the whole file";
+    /* The tag 0 stands for it. */
     if (FT_Load_Sfnt_Table(face, 0, 0, NULL, &length) || length == 0)
         return NFR_NOT_A_FONT;
     copy = (FT_Byte *)malloc(length);
-    if (!copy)
+    if (!copy) {
+        *message = "no memory for a copy of the file";
         return NFR_LIMIT;
+    }
     if (FT_Load_Sfnt_Table(face, 0, 0, copy, &length)) {
         free(copy);
         return NFR_NOT_A_FONT;
     }
+    *message = NULL;
     return nfr_font_new_borrowed(copy, length, index, free, copy, font);
 }
 
@@ -98,6 +112,7 @@ static nfr_face *nfr_face_of(FT_GlyphSlot slot)
 {
     FT_ULong length = 0;
     nfr_font *font = NULL;
+    const char *message;
     nfr_status status;
     nfr_face *held;
 
@@ -110,11 +125,11 @@ static nfr_face *nfr_face_of(FT_GlyphSlot slot)
     held = (nfr_face *)calloc(1, sizeof *held);
     if (!held)
         return NULL;
-    status = nfr_open(slot->face, &font);
+    status = nfr_open(slot->face, &font, &message);
     if (status == NFR_OK)
         status = nfr_rasterizer_new(font, &held->rasterizer);
     nfr_font_free(font);
-    nfr_note(held, status);
+    nfr_note(held, status, message);
     slot->generic.data = held;
     slot->generic.finalizer = nfr_face_done;
     return held;
@@ -293,7 +308,7 @@ static FT_Error nfr_draw(nfr_face *held, FT_GlyphSlot slot, float ppem, const FT
     nfr_status status;
 
     status = nfr_rasterizer_draw(held->rasterizer, slot->glyph_index, ppem, x, y, &pixels, &placement);
-    nfr_note(held, status);
+    nfr_note(held, status, NULL);
     if (status != NFR_OK)
         return FT_Err_Cannot_Render_Glyph;
     if (placement.width && placement.height) {
@@ -334,7 +349,7 @@ static FT_Error nfr_render(FT_Renderer renderer, FT_GlyphSlot slot, FT_Render_Mo
     ppem = (float)FT_MulFix(face->units_per_EM, size->x_scale) / 64.0f;
     /* Whether there is a model is known sooner than how the glyph was loaded. */
     status = nfr_rasterizer_placement(held->rasterizer, slot->glyph_index, ppem, 0.0f, 0.0f, &placement);
-    nfr_note(held, status);
+    nfr_note(held, status, NULL);
     if (status != NFR_OK || !nfr_is_hinted(held, slot, &move))
         return FT_Err_Cannot_Render_Glyph;
     return nfr_draw(held, slot, ppem, &move);

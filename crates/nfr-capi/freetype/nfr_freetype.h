@@ -46,7 +46,8 @@ FT_Error nfr_freetype_add(FT_Library library);
 
 /*
  * What has happened to a face's models so far: NFR_OK; NFR_NO_MODELS for a font that was not converted or of which nothing
- * was rendered yet; or the status of the first glyph or table that was damaged or outdated, or asked for too much.
+ * was rendered yet; or the status of the first table or glyph that was damaged or outdated, asked for more than the limits
+ * allow, or is a network that this build does not draw.
  *
  * message: receives a sentence on it, valid until the face is closed, never NULL; or NULL.
  */
