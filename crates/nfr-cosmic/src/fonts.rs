@@ -4,14 +4,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use cosmic_text::{
-    Buffer, CacheKey, CacheKeyFlags, Color, FontSystem, Placement, Renderer, SwashCache, SwashContent,
-    SwashImage, fontdb, render_decoration,
+    Buffer, CacheKey, CacheKeyFlags, FontSystem, Placement, SwashCache, SwashContent, SwashImage, fontdb,
 };
 use nfr::{DrawOptions, Error, Font, Rasterizer};
 use read_fonts::{FontRef, TableProvider};
-
-use crate::canvas::Canvas;
-use crate::renderer::NeuralRenderer;
 
 /// The fonts with models among those of a `FontSystem`. They are found by themselves when their glyphs are drawn.
 ///
@@ -55,36 +51,6 @@ impl NeuralFonts {
     /// Knows no font yet.
     pub fn new() -> Self {
         Self::default()
-    }
-
-    /// Draws a buffer onto a canvas: what `Buffer::draw` does, whole bitmaps at a time. Images are kept in `cache`.
-    pub fn draw(
-        &mut self,
-        buffer: &mut Buffer,
-        fonts: &mut FontSystem,
-        cache: &mut SwashCache,
-        color: Color,
-        canvas: &mut impl Canvas,
-    ) {
-        buffer.shape_until_scroll(fonts, false);
-        let mut renderer = self.renderer(fonts, cache, canvas);
-        for run in buffer.layout_runs() {
-            for glyph in run.glyphs {
-                let color = glyph.color_opt.unwrap_or(color);
-                renderer.glyph(glyph.physical((0.0, run.line_y), 1.0), color);
-            }
-            render_decoration(&mut renderer, &run, color);
-        }
-    }
-
-    /// A renderer of cosmic-text that draws onto a canvas.
-    pub fn renderer<'r, C: Canvas>(
-        &'r mut self,
-        fonts: &'r mut FontSystem,
-        cache: &'r mut SwashCache,
-        canvas: &'r mut C,
-    ) -> NeuralRenderer<'r, C> {
-        NeuralRenderer::new(self, fonts, cache, canvas)
     }
 
     /// Puts the images of a buffer's glyphs into `cache`, so that `Buffer::draw`, which looks there first, draws them. Glyphs that

@@ -1,9 +1,44 @@
 //! A renderer of cosmic-text.
 
-use cosmic_text::{Color, FontSystem, PhysicalGlyph, SwashCache, SwashContent, SwashImage};
+use cosmic_text::{
+    Buffer, Color, FontSystem, PhysicalGlyph, Renderer, SwashCache, SwashContent, SwashImage,
+    render_decoration,
+};
 
 use crate::canvas::{Canvas, Image};
 use crate::fonts::NeuralFonts;
+
+impl NeuralFonts {
+    /// Draws a buffer onto a canvas: what `Buffer::draw` does, whole bitmaps at a time. Images are kept in `cache`.
+    pub fn draw(
+        &mut self,
+        buffer: &mut Buffer,
+        fonts: &mut FontSystem,
+        cache: &mut SwashCache,
+        color: Color,
+        canvas: &mut impl Canvas,
+    ) {
+        buffer.shape_until_scroll(fonts, false);
+        let mut renderer = self.renderer(fonts, cache, canvas);
+        for run in buffer.layout_runs() {
+            for glyph in run.glyphs {
+                let color = glyph.color_opt.unwrap_or(color);
+                renderer.glyph(glyph.physical((0.0, run.line_y), 1.0), color);
+            }
+            render_decoration(&mut renderer, &run, color);
+        }
+    }
+
+    /// A renderer of cosmic-text that draws onto a canvas.
+    pub fn renderer<'r, C: Canvas>(
+        &'r mut self,
+        fonts: &'r mut FontSystem,
+        cache: &'r mut SwashCache,
+        canvas: &'r mut C,
+    ) -> NeuralRenderer<'r, C> {
+        NeuralRenderer { neural: self, fonts, cache, canvas }
+    }
+}
 
 /// Draws glyphs and rectangles onto a canvas, glyphs with models from these and others by swash. Made by
 /// [`NeuralFonts::renderer`].
@@ -15,18 +50,7 @@ pub struct NeuralRenderer<'r, C> {
     canvas: &'r mut C,
 }
 
-impl<'r, C: Canvas> NeuralRenderer<'r, C> {
-    pub(crate) fn new(
-        neural: &'r mut NeuralFonts,
-        fonts: &'r mut FontSystem,
-        cache: &'r mut SwashCache,
-        canvas: &'r mut C,
-    ) -> Self {
-        Self { neural, fonts, cache, canvas }
-    }
-}
-
-impl<C: Canvas> cosmic_text::Renderer for NeuralRenderer<'_, C> {
+impl<C: Canvas> Renderer for NeuralRenderer<'_, C> {
     fn rectangle(&mut self, x: i32, y: i32, w: u32, h: u32, color: Color) {
         self.canvas.rectangle(x, y, w, h, color);
     }
