@@ -9,11 +9,11 @@
 mod common;
 
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use common::{Drawing, Setting, converted, font, median_time};
 use cosmic_text::{CacheKeyFlags, SwashCache};
-use image::RgbaImage;
+use image::{DynamicImage, RgbaImage};
 use nfr_cosmic::NeuralFonts;
 
 const TEXT: &str = "Hamburgefonstiv 0123456789. \"Hinting\" puts bars on whole pixels, so that 'e' is crisp: AV, To, Wa, fi & @.\n\
@@ -60,7 +60,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         let rate = |seconds: f64| setting.glyphs() as f64 / seconds / 1e6;
         println!("{name:16} {:6.2} million glyphs a second cold, {:6.2} warm", rate(cold), rate(warm));
     }
-    picture.ok_or("no column")?.save(&out)?;
+    save(picture.ok_or("no column")?, &out)?;
     println!("{}: models, swash hinted, swash unhinted, from the left", out.display());
     Ok(())
+}
+
+/// Writes a picture, in a byte a pixel where it has no colours.
+fn save(picture: RgbaImage, out: &Path) -> Result<(), image::ImageError> {
+    let is_grey = picture.pixels().all(|image::Rgba([red, green, blue, _])| red == green && green == blue);
+    let picture = DynamicImage::from(picture);
+    if is_grey { picture.to_luma8().save(out) } else { picture.save(out) }
 }
