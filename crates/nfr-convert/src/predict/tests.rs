@@ -30,6 +30,10 @@ fn at(tracks: &[Track], wanted: u16) -> Vec<f64> {
 /// A track that moves by more than this, in pixels, is recognisably rounded.
 const ROUNDING_SHOWS: f64 = 0.15;
 
+/// From so many sizes on at which it shows, rounding is recognised. With seven or fewer, as for tracks within 0.003 of half an em,
+/// it is not always: found by a scan of all tracks in steps of 0.00005 em and all odd sizes.
+const ROUNDED_SIZES: usize = 8;
+
 /// The least share of bars at unknown sizes that are predicted exactly, and the largest share that vanish: the known sizes
 /// do not determine everything.
 const BARS: [f64; 2] = [0.95, 0.01];
@@ -71,9 +75,9 @@ proptest! {
         unhinted in -0.4f64..1.1, wanted in 9u16..64,
     ) {
         let rule = |size: f64| (unhinted * size + 0.5).floor();
-        // A track near half an em is nearly whole at all even sizes, so that rounding does not show at any of them.
+        // A track near half an em is nearly whole at all even sizes, so that rounding shows at few of them.
         let shows = |size: &u16| (rule(f64::from(*size)) - unhinted * f64::from(*size)).abs() > ROUNDING_SHOWS;
-        prop_assume!((8..=64).step_by(2).any(|size| shows(&size)));
+        prop_assume!((8..=64).step_by(2).filter(shows).count() >= ROUNDED_SIZES);
         prop_assert_eq!(at(&[track(unhinted, rule)], wanted), [rule(f64::from(wanted))]);
     }
 
