@@ -34,6 +34,10 @@ const ROUNDING_SHOWS: f64 = 0.15;
 /// it is not always: found by a scan of all tracks in steps of 0.00005 em and all odd sizes.
 const ROUNDED_SIZES: usize = 8;
 
+/// Nearer than this to halfway between two pixels, a position may be predicted on the other side, as known sizes may all fit
+/// thresholds a little off: 86 of 800,000 positions of the same scan, the farthest at 0.027.
+const HALFWAY: f64 = 0.03;
+
 /// The least share of bars at unknown sizes that are predicted exactly, and the largest share that vanish: the known sizes
 /// do not determine everything.
 const BARS: [f64; 2] = [0.95, 0.01];
@@ -78,6 +82,7 @@ proptest! {
         // A track near half an em is nearly whole at all even sizes, so that rounding shows at few of them.
         let shows = |size: &u16| (rule(f64::from(*size)) - unhinted * f64::from(*size)).abs() > ROUNDING_SHOWS;
         prop_assume!((8..=64).step_by(2).filter(shows).count() >= ROUNDED_SIZES);
+        prop_assume!(((unhinted * f64::from(wanted)).rem_euclid(1.0) - 0.5).abs() > HALFWAY);
         prop_assert_eq!(at(&[track(unhinted, rule)], wanted), [rule(f64::from(wanted))]);
     }
 
