@@ -1,9 +1,10 @@
-//! At which size and where between pixels a glyph is drawn.
+//! At which size and where between pixels a glyph is drawn, and whether it is hinted.
 
 use crate::constants::{MAX_OFFSET, MAX_PPEM};
 use crate::error::Error;
+use crate::model::sizes::{HintedSize, Scale};
 
-/// How a glyph is drawn: its size and its subpixel offset. A plain number is a size with no offset.
+/// How a glyph is drawn: its size, its subpixel offset, and whether it is hinted. A plain number is a size with no offset, hinted.
 ///
 /// ```
 /// let quarter = nfr::DrawOptions::new(16.0).with_offset([0.25, 0.0]);
@@ -13,6 +14,7 @@ use crate::error::Error;
 pub struct DrawOptions {
     pub(crate) ppem: f32,
     pub(crate) offset: [f32; 2],
+    pub(crate) hinting: bool,
 }
 
 impl DrawOptions {
@@ -21,9 +23,9 @@ impl DrawOptions {
     /// The largest subpixel offset either way, in pixels.
     pub const MAX_OFFSET: f32 = MAX_OFFSET;
 
-    /// A size in pixels per em, above 0 and at most [`Self::MAX_PPEM`]; it may be fractional. No offset.
+    /// A size in pixels per em, above 0 and at most [`Self::MAX_PPEM`]; it may be fractional. No offset, hinted.
     pub fn new(ppem: f32) -> Self {
-        Self { ppem, offset: [0.0; 2] }
+        Self { ppem, offset: [0.0; 2], hinting: true }
     }
 
     /// Sets the subpixel offset: how far the glyph is moved in pixels, x to the right and y up. It is what is left of a
@@ -32,6 +34,13 @@ impl DrawOptions {
     #[must_use]
     pub fn with_offset(self, offset: [f32; 2]) -> Self {
         Self { offset, ..self }
+    }
+
+    /// Chooses between the hinted glyph and its plain outline, as for text that is animated or transformed. The plain outline
+    /// is drawn for glyphs without a model, too, whatever [`MissingModel`](crate::MissingModel) says.
+    #[must_use]
+    pub fn with_hinting(self, hinting: bool) -> Self {
+        Self { hinting, ..self }
     }
 
     /// The size in pixels per em.
@@ -44,7 +53,17 @@ impl DrawOptions {
         self.offset
     }
 
-    /// Checks both.
+    /// Whether the glyph is hinted.
+    pub fn hinting(&self) -> bool {
+        self.hinting
+    }
+
+    /// How a font whose models have this scale is hinted at the size.
+    pub(crate) fn size(&self, scale: Scale) -> HintedSize {
+        if self.hinting { scale.at(self.ppem) } else { HintedSize::plain(self.ppem) }
+    }
+
+    /// Checks the size and the offset.
     pub(crate) fn checked(self) -> Result<Self, Error> {
         check_ppem(self.ppem)?;
         match self.offset.iter().find(|offset| offset.is_nan() || offset.abs() > Self::MAX_OFFSET) {

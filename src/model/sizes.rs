@@ -68,7 +68,7 @@ impl Scale {
             let ppem = if self.whole_sizes { trained_ppem } else { ppem };
             HintedSize { ppem, index, trained_ppem, strength: 1.0 }
         } else {
-            HintedSize { ppem, index: 0, trained_ppem: ppem, strength: 0.0 }
+            HintedSize::plain(ppem)
         }
     }
 }
@@ -84,4 +84,11 @@ pub struct HintedSize {
     pub trained_ppem: f32,
     /// The factor of displacements: 1, or 0 where nothing is hinted.
     pub strength: f32,
+}
+
+impl HintedSize {
+    /// A size at which nothing is hinted.
+    pub fn plain(ppem: f32) -> Self {
+        Self { ppem, index: 0, trained_ppem: ppem, strength: 0.0 }
+    }
 }

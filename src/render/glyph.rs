@@ -55,6 +55,7 @@ pub(super) struct Outlines {
 #[derive(Debug, Default)]
 pub(super) struct Flattened {
     ppem: f32,
+    hinting: bool,
     polygons: Polygons,
 }
 
@@ -110,13 +111,22 @@ impl Glyph {
     }
 
     /// Whether a size is decoded.
-    pub(super) fn has_size(&self, ppem: f32) -> bool {
+    pub(super) fn has_size(&self, options: DrawOptions) -> bool {
         match &self.drawn {
             Drawn::Outlines(outlines) => outlines.parts.iter().all(|(model, _)| {
-                let size = model.scale.at(ppem);
+                let size = options.size(model.scale);
                 size.strength == 0.0 || model.has_size(size.index)
             }),
             _ => true,
+        }
+    }
+
+    /// Whether it can be drawn without hints. A network cannot.
+    pub(super) fn has_outline(&self) -> bool {
+        match &self.drawn {
+            Drawn::Outlines(_) | Drawn::Fields(_) => true,
+            #[cfg(feature = "networks")]
+            Drawn::Network(_) => false,
         }
     }
 
@@ -138,7 +148,7 @@ impl Glyph {
     /// `BitmapTooLarge` for points that are too far away.
     pub(super) fn left(&self, ppem: f32, scratch: &mut Scratch) -> Result<Option<i32>, Error> {
         match &self.drawn {
-            Drawn::Outlines(outlines) => match outlines.at(ppem) {
+            Drawn::Outlines(outlines) => match outlines.at(DrawOptions::new(ppem)) {
                 Some((size, parts)) => leftmost(parts, &size, scratch),
                 None => Ok(None),
             },
@@ -174,7 +184,7 @@ impl Glyph {
             Drawn::Fields(parts) => {
                 let mut whole = Placement::default();
                 for (model, origin) in parts {
-                    let size = model.scale().at(options.ppem);
+                    let size = options.size(model.scale());
                     whole = union(whole, model.placement_at(&size, position(origin, &size, options))?);
                 }
                 whole
@@ -252,7 +262,7 @@ impl Glyph {
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
         let size = match parts.first() {
-            Some((model, _)) => model.scale().at(options.ppem),
+            Some((model, _)) => options.size(model.scale()),
             None => return Ok(room(Placement::default())?.map(|_| Placement::default())),
         };
         if let [(model, origin)] = parts
@@ -287,9 +297,12 @@ impl Glyph {
 
 impl Outlines {
     /// The outlines at a size, with their offsets in 1/64 pixel. None if there are none.
-    fn at(&self, ppem: f32) -> Option<(HintedSize, impl Iterator<Item = (&OutlineModel, [i32; 2])>)> {
+    fn at(
+        &self,
+        options: DrawOptions,
+    ) -> Option<(HintedSize, impl Iterator<Item = (&OutlineModel, [i32; 2])>)> {
         let (first, _) = self.parts.first()?;
-        let (size, units) = (first.scale.at(ppem), first.scale.units_per_em());
+        let (size, units) = (options.size(first.scale), first.scale.units_per_em());
         let parts = self.parts.iter().map(move |(model, part)| (&**model, part.offset_at(&size, units)));
         Some((size, parts))
     }
@@ -302,16 +315,16 @@ impl Outlines {
         budget: &mut Budget,
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
-        if kept.ppem == options.ppem {
+        if (kept.ppem, kept.hinting) == (options.ppem, options.hinting) {
             return draw_polygons(&kept.polygons, options, scratch, budget, room);
         }
-        let Some((size, parts)) = self.at(options.ppem) else {
+        let Some((size, parts)) = self.at(options) else {
             return Ok(room(Placement::default())?.map(|_| Placement::default()));
         };
         flatten(parts, &size, scratch, budget)?;
         let polygons = core::mem::take(&mut scratch.polygons);
         if polygons.vertices[0].len() <= MAX_KEPT {
-            kept.ppem = options.ppem;
+            (kept.ppem, kept.hinting) = (options.ppem, options.hinting);
             kept.polygons.copy_from(&polygons);
         }
         let drawn = draw_polygons(&polygons, options, scratch, budget, room);

@@ -52,7 +52,7 @@ pub(super) fn draw_plain<'b>(
     read_outline(font, glyph, &mut points)?;
     let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0..0);
     let model = model.map_err(|damage| damage.of(glyph))?;
-    let size = HintedSize { strength: 0.0, ..font.scale().with_whole_sizes(false).at(options.ppem) };
+    let size = HintedSize::plain(options.ppem);
     let room = |placement: Placement| {
         limits.check_sides(placement.width, placement.height)?;
         room(placement)

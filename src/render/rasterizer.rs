@@ -106,7 +106,7 @@ impl Rasterizer {
     pub fn hinted_advance(&mut self, glyph: u32, ppem: f32) -> Result<f32, Error> {
         DrawOptions::new(ppem).checked()?;
         let size = self.decoder.font().scale().at(ppem);
-        let more = match self.cache.get(&mut self.decoder, glyph, ppem) {
+        let more = match self.cache.get(&mut self.decoder, glyph, DrawOptions::new(ppem)) {
             Ok(entry) => entry.decoded.hinted_advance(&size),
             Err(Error::MissingModel(missing)) if missing == glyph => None,
             Err(error) => return Err(error),
@@ -127,7 +127,7 @@ impl Rasterizer {
     /// `NoSuchGlyph`, `InvalidSize`, `BitmapTooLarge`, and those of a damaged model.
     pub fn hinted_side_bearing(&mut self, glyph: u32, ppem: f32) -> Result<f32, Error> {
         DrawOptions::new(ppem).checked()?;
-        let left = match self.cache.get(&mut self.decoder, glyph, ppem) {
+        let left = match self.cache.get(&mut self.decoder, glyph, DrawOptions::new(ppem)) {
             Ok(entry) => entry.decoded.left(ppem, &mut self.scratch)?,
             Err(Error::MissingModel(missing)) if missing == glyph => None,
             Err(error) => return Err(error),
@@ -221,8 +221,8 @@ impl Rasterizer {
         options: DrawOptions,
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
-        match self.cache.get(&mut self.decoder, glyph, options.ppem) {
-            Ok(entry) => {
+        match self.cache.get(&mut self.decoder, glyph, options) {
+            Ok(entry) if options.hinting || entry.decoded.has_outline() => {
                 let before = entry.kept.memory();
                 let drawn = entry.decoded.draw_kept(&mut entry.kept, options, &mut self.scratch, room);
                 let after = entry.kept.memory();
@@ -231,20 +231,30 @@ impl Rasterizer {
                 }
                 drawn
             }
-            Err(error @ Error::MissingModel(missing)) if missing == glyph => match self.missing {
-                MissingModel::Error => Err(error),
-                MissingModel::Blank => {
-                    options.checked()?;
-                    room(Placement::default())?;
-                    Ok(Some(Placement::default()))
+            Err(error @ Error::MissingModel(missing)) if missing == glyph && options.hinting => {
+                match self.missing {
+                    MissingModel::Error => Err(error),
+                    MissingModel::Blank => {
+                        options.checked()?;
+                        room(Placement::default())?;
+                        Ok(Some(Placement::default()))
+                    }
+                    MissingModel::Outline => self.draw_plain(glyph, options, room),
                 }
-                MissingModel::Outline => {
-                    let (font, limits) = (self.decoder.font(), self.decoder.limits());
-                    draw_plain(font, glyph, options, limits, &mut self.scratch, room)
-                }
-            },
-            Err(error) => Err(error),
+            }
+            Err(error) if !matches!(error, Error::MissingModel(missing) if missing == glyph) => Err(error),
+            Ok(_) | Err(_) => self.draw_plain(glyph, options, room),
         }
+    }
+
+    /// Draws the outline that the font has for a glyph.
+    fn draw_plain<'b>(
+        &mut self,
+        glyph: u32,
+        options: DrawOptions,
+        room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
+    ) -> Result<Option<Placement>, Error> {
+        draw_plain(self.decoder.font(), glyph, options, self.decoder.limits(), &mut self.scratch, room)
     }
 }
 
@@ -277,17 +287,17 @@ impl Entry {
 
 impl Cache {
     /// The glyph, decoded for a size.
-    fn get(&mut self, decoder: &mut Decoder, glyph: u32, ppem: f32) -> Result<&mut Entry, Error> {
+    fn get(&mut self, decoder: &mut Decoder, glyph: u32, options: DrawOptions) -> Result<&mut Entry, Error> {
         self.clock += 1;
         let at = match self.find(glyph) {
-            Some(at) if self.entries.get(at).is_some_and(|entry| entry.decoded.has_size(ppem)) => at,
+            Some(at) if self.entries.get(at).is_some_and(|entry| entry.decoded.has_size(options)) => at,
             // Whoever asks for another size may ask for more of them.
             Some(at) => {
                 self.remove(at);
                 self.load(decoder, glyph, 0..decoder.font().scale().sizes())?
             }
             None => {
-                let size = decoder.font().scale().at(ppem);
+                let size = options.size(decoder.font().scale());
                 self.load(decoder, glyph, sizes_for(size.index))?
             }
         };
