@@ -13,10 +13,9 @@ use crate::placement::{Placement, union};
 impl Rasterizer {
     /// Draws coverage of red, green and blue into a buffer of the rasterizer's own, and lends it until the next drawing.
     ///
-    /// A channel is blended by its own coverage: `red += (colour.red - red) * coverage[0] / 255`, green and blue likewise. Blended
-    /// in linear light, edges have no colour of their own, and dark text on a light ground looks thinner than most people
-    /// are used to; blended in sRGB values as they are, it looks as in most programs, with a trace of colour.
-    /// The example `lcd` shows both. Fonts that are converted with `--target lcd` have the hints for subpixels.
+    /// A channel is blended by its own coverage, as `red += (colour.red - red) * coverage[0] / 255`. The repository's
+    /// `docs/lcd.md` says which values to blend, those of the screen or those of light; the example `lcd` does both. Fonts that
+    /// are converted with `--target lcd` have the hints for subpixels.
     ///
     /// ```
     /// # let font = nfr::Font::new(include_bytes!("../../spec/vectors/outline.ttf").as_slice())?;
