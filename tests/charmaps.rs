@@ -4,8 +4,8 @@
 mod samples;
 
 use nfr::Font;
-use read_fonts::FontRef;
-use read_fonts::types::Tag;
+use read_fonts::types::{GlyphId, Tag};
+use read_fonts::{FontRef, model};
 use write_fonts::FontBuilder;
 
 use samples::bytes;
@@ -77,7 +77,26 @@ fn with_cmap(subtables: &[Subtable]) -> Font {
     let data = bytes("sans");
     let mut builder = FontBuilder::new();
     builder.add_raw(Tag::new(b"cmap"), cmap).copy_missing_tables(FontRef::new(&data).unwrap());
-    Font::new(builder.build()).unwrap()
+    checked(builder.build())
+}
+
+/// A font whose characters are those that read-fonts' own model of a font has.
+fn checked(data: Vec<u8>) -> Font {
+    let (font, twin) = (Font::new(data.clone()).unwrap(), model::Font::new(data, 0).unwrap());
+    let characters: Vec<_> = twin.charmap().unicodes().map(|(code, glyph)| (code, glyph.to_u32())).collect();
+    assert!(font.characters().map(|(c, glyph)| (u32::from(c), glyph)).eq(characters));
+    for code in (0..0x2_0000).filter_map(char::from_u32) {
+        let glyph = twin.charmap().map_unicode(code).map(GlyphId::to_u32);
+        assert_eq!(font.glyph_for_char(code), glyph, "U+{:04X}", u32::from(code));
+    }
+    font
+}
+
+#[test]
+fn characters_of_whole_fonts_are_found() {
+    for name in ["outline", "serif", "mono"] {
+        checked(bytes(name));
+    }
 }
 
 #[test]

@@ -315,6 +315,25 @@ fn metrics_are_those_of_the_font_and_linear() {
     }
 }
 
+#[test]
+fn a_line_is_the_one_that_the_font_asks_for() {
+    let data = bytes("serif");
+    let (hhea, os2) = (table(&data, b"hhea").start, table(&data, b"OS/2").start);
+    // `hhea`: ascender, descender, line gap; `OS/2`: fsSelection, and its two lines.
+    let zeroed = [hhea + 4..hhea + 8, os2 + 68..os2 + 74, os2 + 74..os2 + 78];
+    for (typo, zeros) in [false, true].into_iter().flat_map(|typo| (0..8).map(move |zeros| (typo, zeros))) {
+        let mut data = data.clone();
+        data[os2 + 63] = if typo { data[os2 + 63] | 0x80 } else { data[os2 + 63] & 0x7f };
+        for (_, range) in (0..).zip(&zeroed).filter(|(k, _)| zeros >> k & 1 == 1) {
+            data[range.clone()].fill(0);
+        }
+        let twin = read_fonts::model::Font::new(data.clone(), 0).unwrap().metrics().h_line().unwrap();
+        let twin = [twin.ascender, twin.descender, twin.line_gap].map(|units| units.to_f32());
+        let line = Font::new(data).unwrap().line_metrics(2048.0);
+        assert_eq!([line.ascent, line.descent, line.line_gap], twin, "typographic: {typo}, zeros: {zeros:b}");
+    }
+}
+
 /// Ascent, descent, line gap, and the underline's position and thickness of Liberation Serif.
 const UNITS: [i32; 5] = [1825, -443, 87, -123, 100];
 

@@ -5,8 +5,6 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use read_fonts::TableProvider;
-
 use super::font::Font;
 use super::glyph::{Drawn, Glyph, Outlines, SharedModel};
 use super::stored_outline::Memory;
@@ -143,10 +141,9 @@ impl Font {
         if self.outlines_dropped() {
             return true;
         }
-        let glyf = self.model().tables().glyf();
-        let is_same = glyf.is_ok_and(|glyf| {
-            outline_hash(self.units_per_em(), glyf.offset_data().as_bytes()) == self.header().outline_hash
-        });
+        let is_same = self
+            .glyf()
+            .is_some_and(|glyf| outline_hash(self.units_per_em(), glyf) == self.header().outline_hash);
         // Other bytes may stand for the same outlines, as after compression to WOFF2. Outline models know theirs.
         is_same || self.outline_models_match()
     }

@@ -4,13 +4,13 @@ use alloc::sync::Arc;
 use core::fmt;
 use core::ops::Range;
 
-use read_fonts::model::Blob;
-use read_fonts::tables::cmap::PlatformId;
-use read_fonts::tables::head::Flags;
-use read_fonts::types::{GlyphId, Tag};
-use read_fonts::{FontRef, TableProvider, model};
+use read_fonts::FontRef;
+use read_fonts::tables::cmap::Cmap;
+use read_fonts::types::GlyphId;
 
+use super::charmap::{characters, glyph_of, glyph_of_variation};
 use super::metrics::LineMetrics;
+use super::tables::{OutlineTables, Tables, malformed, table_range};
 use crate::error::Error;
 use crate::model::sizes::Scale;
 use crate::table::{self, Header, Table};
@@ -22,13 +22,14 @@ use crate::target::Target;
 pub struct Font(Arc<Inner>);
 
 struct Inner {
-    font: model::Font,
-    data: Blob,
+    data: Arc<dyn AsRef<[u8]> + Send + Sync>,
+    /// Which of the file's fonts it is.
+    index: u32,
+    tables: Tables,
     /// Where the `Nfrt` table is in the file.
     table: Range<usize>,
     header: Header,
     scale: Scale,
-    glyph_count: u32,
 }
 
 const _: () = {
@@ -63,29 +64,27 @@ impl Font {
     /// or `UnitsPerEm` for a font whose header, metrics or character map cannot be read; `MalformedModels` or
     /// `UnknownVersion`; `Renumbered` if glyphs were taken out or added after the conversion.
     pub fn from_index(data: impl AsRef<[u8]> + Send + Sync + 'static, index: u32) -> Result<Self, Error> {
-        let data = Blob::Shared(Arc::new(data));
-        let file = open(&data, index)?;
-        let table = range(&file, &data, table::TAG)?.ok_or(Error::NotConverted)?;
-        let units_per_em = head_units(&file)?;
-        let whole_sizes = has_whole_sizes(&file)?;
-        check_tables(&file, &data)?;
-        let glyph_count: u32 = file.maxp().map_err(|_| malformed(b"maxp"))?.num_glyphs().into();
-        let models = Table::parse(&data[table.clone()])?;
+        let file = open(data.as_ref(), index)?;
+        let table = table_range(&file, data.as_ref(), table::TAG)?.ok_or(Error::NotConverted)?;
+        let tables = Tables::new(&file, data.as_ref())?;
+        let models = Table::parse(&data.as_ref()[table.clone()])?;
         models.check()?;
         let header = *models.header();
-        if header.glyph_count != 0 && u32::from(header.glyph_count) != glyph_count {
-            return Err(Error::Renumbered { models: header.glyph_count.into(), font: glyph_count });
+        if header.glyph_count != 0 && header.glyph_count != tables.glyph_count {
+            return Err(Error::Renumbered {
+                models: header.glyph_count.into(),
+                font: tables.glyph_count.into(),
+            });
         }
-        // Table::parse has checked the sizes, head_units the units.
-        let scale =
-            header.scale(units_per_em).ok_or(Error::UnitsPerEm(units_per_em))?.with_whole_sizes(whole_sizes);
-        let font = model::Font::new(data.clone(), index).ok_or(Error::NotAFont)?;
-        Ok(Self(Arc::new(Inner { font, data, table, header, scale, glyph_count })))
+        // Table::parse has checked the sizes, Tables::new the units.
+        let scale = header.scale(tables.units_per_em).ok_or(Error::UnitsPerEm(tables.units_per_em))?;
+        let scale = scale.with_whole_sizes(tables.whole_sizes);
+        Ok(Self(Arc::new(Inner { data: Arc::new(data), index, tables, table, header, scale })))
     }
 
     /// The file's bytes, for a shaper or another renderer.
     pub fn data(&self) -> &[u8] {
-        &self.0.data
+        (*self.0.data).as_ref()
     }
 
     /// What the models were trained for.
@@ -101,7 +100,7 @@ impl Font {
 
     /// The number of glyphs in the font, with a model or without.
     pub fn glyph_count(&self) -> u32 {
-        self.0.glyph_count
+        self.0.tables.glyph_count.into()
     }
 
     /// The glyphs that have a model, ascending.
@@ -130,19 +129,20 @@ impl Font {
 
     /// The glyph that the font's character map gives for a character.
     pub fn glyph_for_char(&self, character: char) -> Option<u32> {
-        self.0.font.charmap().map_unicode(character).map(GlyphId::to_u32)
+        glyph_of(&self.cmap()?, character).map(GlyphId::to_u32)
     }
 
     /// The glyph of a character with a variation selector behind it, U+FE00–FE0F or U+E0100–E01EF (OpenType 1.9, "cmap", format 14).
     /// `None` if the font does not list them: [`Font::glyph_for_char`] has the glyph then, and nothing is drawn for the selector.
     pub fn glyph_for_variation(&self, character: char, selector: char) -> Option<u32> {
-        self.0.font.charmap().map_unicode_variant(character, selector).map(GlyphId::to_u32)
+        glyph_of_variation(&self.cmap()?, character, selector).map(GlyphId::to_u32)
     }
 
     /// The characters of the font's character map with their glyphs.
     pub fn characters(&self) -> impl Iterator<Item = (char, u32)> + '_ {
-        let mappings = self.0.font.charmap().unicodes();
-        mappings.filter_map(|(code, glyph)| Some((char::from_u32(code)?, glyph.to_u32())))
+        let glyph_count = self.0.tables.glyph_count;
+        let found = self.cmap().into_iter().flat_map(move |cmap| characters(&cmap, glyph_count));
+        found.map(|(character, glyph)| (character, glyph.to_u32()))
     }
 
     /// Font units in an em.
@@ -152,23 +152,20 @@ impl Font {
 
     /// The advance width in pixels, linear in the size; 0 for a glyph that the font does not have.
     pub fn advance(&self, glyph: u32, ppem: f32) -> f32 {
-        if glyph >= self.0.glyph_count {
-            return 0.0;
-        }
-        let units = self.0.font.glyph_metrics().h_advance(GlyphId::new(glyph));
-        units * ppem / f32::from(self.0.scale.units_per_em())
+        f32::from(self.advance_units(glyph)) * ppem / f32::from(self.0.scale.units_per_em())
     }
 
     /// The left side bearing of `hmtx` in pixels, linear in the size; 0 for a glyph that the font does not have.
     pub(super) fn side_bearing(&self, glyph: u32, ppem: f32) -> f32 {
-        let bearing =
-            self.0.font.tables().hmtx().ok().and_then(|hmtx| hmtx.side_bearing(GlyphId::new(glyph)));
+        let hmtx = self.0.tables.hmtx(self.data());
+        let bearing = hmtx.and_then(|hmtx| hmtx.side_bearing(GlyphId::new(glyph)));
         f32::from(bearing.unwrap_or(0)) * ppem / f32::from(self.0.scale.units_per_em())
     }
 
     /// Metrics of a line of text at a size in pixels per em.
     pub fn line_metrics(&self, ppem: f32) -> LineMetrics {
-        LineMetrics::new(&self.0.font, ppem)
+        open(self.data(), self.0.index)
+            .map_or_else(|_| LineMetrics::default(), |font| LineMetrics::new(&font, ppem))
     }
 
     /// Whether the glyphs that have models have no outlines in this font.
@@ -185,7 +182,7 @@ impl Font {
 
     /// The `Nfrt` table. It was read when the font was opened; this only finds its arrays again.
     pub(crate) fn table(&self) -> Result<Table<'_>, Error> {
-        let bytes = self.0.data.get(self.0.table.clone()).ok_or(malformed(b"Nfrt"))?;
+        let bytes = self.data().get(self.0.table.clone()).ok_or(malformed(b"Nfrt"))?;
         Table::parse(bytes)
     }
 
@@ -194,8 +191,27 @@ impl Font {
         self.0.scale
     }
 
-    pub(super) fn model(&self) -> &model::Font {
-        &self.0.font
+    /// The bytes of the table `glyf`.
+    pub(super) fn glyf(&self) -> Option<&[u8]> {
+        self.0.tables.glyf(self.data())
+    }
+
+    /// What outlines are read from. None in a font that has none.
+    pub(super) fn outline_tables(&self) -> Option<OutlineTables<'_>> {
+        self.0.tables.outlines(self.data())
+    }
+
+    /// A glyph's advance width in font units; 0 for a glyph that the font does not have.
+    pub(super) fn advance_units(&self, glyph: u32) -> u16 {
+        if glyph >= self.glyph_count() {
+            return 0;
+        }
+        let hmtx = self.0.tables.hmtx(self.data());
+        hmtx.and_then(|hmtx| hmtx.advance(GlyphId::new(glyph))).unwrap_or_default()
+    }
+
+    fn cmap(&self) -> Option<Cmap<'_>> {
+        self.0.tables.cmap(self.data())
     }
 }
 
@@ -216,65 +232,4 @@ pub fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
             fonts.get(index).map_err(|_| malformed(b"ttcf"))
         }
     }
-}
-
-/// Font units in an em, checked.
-///
-/// # Errors
-///
-/// `MissingTable` or `MalformedTable` if they cannot be read, `UnitsPerEm` if they are not allowed.
-pub fn head_units(font: &FontRef<'_>) -> Result<u16, Error> {
-    match font.head().map_err(|_| unreadable(font, b"head"))?.units_per_em() {
-        units @ 16..=16384 => Ok(units),
-        units => Err(Error::UnitsPerEm(units)),
-    }
-}
-
-/// Whether hinted sizes are whole along x too, which the font's header says.
-fn has_whole_sizes(font: &FontRef<'_>) -> Result<bool, Error> {
-    let head = font.head().map_err(|_| unreadable(font, b"head"))?;
-    Ok(head.flags().contains(Flags::FORCE_INTEGER_PPEM))
-}
-
-fn malformed(tag: &[u8; 4]) -> Error {
-    Error::MalformedTable { tag: *tag }
-}
-
-/// The error for a table that is needed and cannot be read.
-fn unreadable(font: &FontRef<'_>, tag: &[u8; 4]) -> Error {
-    let listed = font.table_directory().table_records().iter().any(|record| record.tag() == Tag::new(tag));
-    if listed { malformed(tag) } else { Error::MissingTable { tag: *tag } }
-}
-
-/// Where a table is in the file; `None` if the font has none.
-fn range(font: &FontRef<'_>, data: &[u8], tag: Tag) -> Result<Option<Range<usize>>, Error> {
-    let records = font.table_directory().table_records();
-    let Some(record) = records.iter().find(|record| record.tag() == tag) else { return Ok(None) };
-    let start = record.offset() as usize;
-    let range = start..start.saturating_add(record.length() as usize);
-    if data.get(range.clone()).is_some() { Ok(Some(range)) } else { Err(malformed(&tag.to_be_bytes())) }
-}
-
-/// Checks what metrics and characters are read from, so that nothing is silently without width or characters later.
-fn check_tables(font: &FontRef<'_>, data: &[u8]) -> Result<(), Error> {
-    font.maxp().map_err(|_| unreadable(font, b"maxp"))?;
-    font.hhea().map_err(|_| unreadable(font, b"hhea"))?;
-    let hmtx = font.hmtx().map_err(|_| unreadable(font, b"hmtx"))?;
-    if hmtx.h_metrics().is_empty() {
-        return Err(malformed(b"hmtx"));
-    }
-    // A font without a character map can be drawn by its glyphs' numbers.
-    let Some(_) = range(font, data, Tag::new(b"cmap"))? else { return Ok(()) };
-    let cmap = font.cmap().map_err(|_| malformed(b"cmap"))?;
-    let unicode = cmap.encoding_records().iter().filter(|record| {
-        matches!(
-            (record.platform_id(), record.encoding_id()),
-            (PlatformId::Unicode, 0..=4 | 6) | (PlatformId::Windows, 0 | 1 | 10)
-        )
-    });
-    let mut readable = unicode.map(|record| record.subtable(cmap.offset_data()).is_ok()).peekable();
-    if readable.peek().is_some() && !readable.any(|is| is) {
-        return Err(malformed(b"cmap"));
-    }
-    Ok(())
 }

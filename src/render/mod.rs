@@ -1,6 +1,7 @@
 //! From a font to pixels.
 
 mod area;
+mod charmap;
 mod decoder;
 mod draw;
 mod flatten;
@@ -14,11 +15,13 @@ mod scratch;
 mod shared_tracks;
 mod stored_outline;
 mod strips;
+mod tables;
 
 pub use decoder::Decoder;
-pub use font::{Font, head_units, open};
+pub use font::{Font, open};
 pub use glyph::{Glyph, HintedOutline};
 pub use metrics::LineMetrics;
 pub use rasterizer::Rasterizer;
 pub use scratch::Scratch;
 pub use stored_outline::{components, recode_outlines};
+pub use tables::head_units;

@@ -4,7 +4,6 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 use core::ops::Range;
 
-use read_fonts::TableProvider;
 use read_fonts::tables::glyf::Glyf;
 use read_fonts::tables::glyf::{Anchor, CompositeGlyphFlags, Glyph};
 use read_fonts::tables::loca::Loca;
@@ -115,13 +114,8 @@ impl Font {
 
     /// What a composite glyph of `glyf` consists of.
     fn components(&self, glyph: u32) -> Option<Vec<Part>> {
-        let tables = self.model().tables();
-        components(&tables.loca(None).ok()?, &tables.glyf().ok()?, glyph)
-    }
-
-    /// A glyph's advance width in font units.
-    pub(super) fn advance_units(&self, glyph: u32) -> u16 {
-        self.model().glyph_metrics().h_advance(glyph.into()).clamp(0.0, f32::from(u16::MAX)) as u16
+        let tables = self.outline_tables()?;
+        components(&tables.loca, &tables.glyf, glyph)
     }
 }
 
