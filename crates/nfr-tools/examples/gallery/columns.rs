@@ -2,6 +2,8 @@
 
 use std::error::Error;
 
+use nfr_convert::compare::metrics::BAD_DIFFERENCE;
+
 use crate::renderer::{NAMES, Renderer};
 use crate::sheet::{MARGIN, Sheet, WIDTH};
 use crate::typeface::Typeface;
@@ -10,6 +12,8 @@ use crate::typeface::Typeface;
 const SIZES: usize = 22;
 const GAP: usize = 12;
 const COLUMN: usize = (WIDTH - 2 * MARGIN - SIZES - NAMES.len() * GAP) / NAMES.len();
+/// The column that the others are compared with.
+const HINTED: usize = 1;
 /// The height of the headings, and from a caption's top to its baseline.
 const HEADINGS: usize = 24;
 const CAPTION_BASELINE: usize = 12;
@@ -58,4 +62,25 @@ pub(crate) fn draw(
         top += lines.len() * height + BETWEEN;
     }
     Ok(top)
+}
+
+/// How many pixels of the columns from the row `top` on are not as in that of the hinted text, as a sentence.
+pub(crate) fn differences(sheet: &Sheet, top: usize) -> String {
+    let of_column = |column: usize| {
+        let (mut bad, mut largest) = (0usize, 0u8);
+        for y in top as u32..sheet.picture.height() {
+            for x in 0..(COLUMN + GAP) as u32 {
+                let light = |column| sheet.light((left(column) - GAP / 2) as u32 + x, y);
+                let difference = light(column).abs_diff(light(HINTED));
+                largest = largest.max(difference);
+                bad += usize::from(difference > BAD_DIFFERENCE);
+            }
+        }
+        format!("{} {bad} ({largest})", NAMES[column])
+    };
+    let columns: Vec<String> = (0..NAMES.len()).filter(|column| *column != HINTED).map(of_column).collect();
+    format!(
+        "Pixels of the picture off from the hinted ones by more than {BAD_DIFFERENCE} of 255, and the largest difference: {}.",
+        columns.join(", ")
+    )
 }

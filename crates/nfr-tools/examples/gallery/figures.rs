@@ -19,22 +19,24 @@ use crate::typeface::Typeface;
 /// Sizes, in pixels per em, over which errors are summed.
 const SIZES: std::ops::RangeInclusive<u16> = 9..=24;
 
-/// Cells of a Markdown table: glyphs of the text; mae and bad16 from the models, unhinted and autohinted; glyphs with models, bytes of
-/// their table, of the hint programs of the same glyphs with the programs and values that all share, of all hint programs; seconds.
-pub(crate) fn cells(typeface: &Typeface<'_>, text: &str, report: &Path) -> Result<String, Box<dyn Error>> {
+/// Cells of two Markdown tables. Errors: glyphs of the text; mae and bad16 from the models, unhinted and autohinted. Costs: glyphs with models,
+/// bytes of their table, of the hint programs of the same glyphs with the programs and values that all share, of all hint programs; seconds.
+pub(crate) fn cells(
+    typeface: &Typeface<'_>,
+    text: &str,
+    report: &Path,
+) -> Result<[String; 2], Box<dyn Error>> {
     let report: Value = serde_json::from_slice(
         &std::fs::read(report).map_err(|e| format!("cannot read {} ({e})", report.display()))?,
     )?;
-    let number = |pointer: &str| {
-        report.pointer(pointer).and_then(Value::as_f64).ok_or(format!("no {pointer} in the report"))
+    let bytes = |pointer: &str| {
+        report.pointer(pointer).and_then(Value::as_u64).ok_or(format!("the report has no {pointer}"))
     };
     let shaped = typeface.shape(text)?;
     let gids: Vec<u16> =
         shaped.glyphs().iter().map(|glyph| glyph.gid).collect::<BTreeSet<_>>().into_iter().collect();
     let [neural, unhinted, autohinted] = errors(typeface, &gids)?;
-    let models = typeface.pair.font().modelled_glyphs().count();
-    let shared = number("/hint_bytes/total")? - number("/hint_bytes/glyph_programs")?;
-    let cells = [
+    let errors = [
         gids.len().to_string(),
         format!("{:.5}", neural.mae),
         format!("{:.4}", unhinted.mae),
@@ -42,12 +44,24 @@ pub(crate) fn cells(typeface: &Typeface<'_>, text: &str, report: &Path) -> Resul
         format!("{:.3} %", 100.0 * neural.bad16),
         format!("{:.1} %", 100.0 * unhinted.bad16),
         format!("{:.1} %", 100.0 * autohinted.bad16),
-        format!("{} ({models})", number("/table_bytes")?),
-        (program_bytes(typeface)? as f64 + shared).to_string(),
-        number("/hint_bytes/total")?.to_string(),
-        format!("{:.1} s", number("/seconds")?),
     ];
-    Ok(cells.join(" | "))
+    let shared = bytes("/hint_bytes/total")? - bytes("/hint_bytes/glyph_programs")?;
+    let costs = [
+        typeface.pair.font().modelled_glyphs().count().to_string(),
+        thousands(bytes("/table_bytes")?),
+        thousands(program_bytes(typeface)? + shared),
+        thousands(bytes("/hint_bytes/total")?),
+        format!("{:.1} s", report["seconds"].as_f64().ok_or("the report has no time")?),
+    ];
+    Ok([errors.join(" | "), costs.join(" | ")])
+}
+
+/// A number with commas, as README has them.
+fn thousands(number: u64) -> String {
+    match number {
+        0..1000 => number.to_string(),
+        _ => format!("{},{:03}", thousands(number / 1000), number % 1000),
+    }
 }
 
 /// Errors against the hinted bitmaps: from the models, unhinted, autohinted.
@@ -70,10 +84,10 @@ fn total(tallies: &Tallies) -> TallyPair {
 }
 
 /// Bytes of the hint programs of the glyphs that have models.
-fn program_bytes(typeface: &Typeface<'_>) -> Result<usize, Box<dyn Error>> {
+fn program_bytes(typeface: &Typeface<'_>) -> Result<u64, Box<dyn Error>> {
     let font = typeface.pair.original();
     let (loca, glyf) = (font.loca(None)?, font.glyf()?);
-    let mut bytes = 0;
+    let mut bytes = 0usize;
     for gid in typeface.pair.font().modelled_glyphs() {
         bytes += match loca.get_glyf(gid.into(), &glyf)? {
             Some(Glyph::Simple(glyph)) => glyph.instructions().len(),
@@ -81,5 +95,5 @@ fn program_bytes(typeface: &Typeface<'_>) -> Result<usize, Box<dyn Error>> {
             None => 0,
         };
     }
-    Ok(bytes)
+    Ok(bytes as u64)
 }

@@ -1,7 +1,7 @@
 //! A word with enlarged pixels: a row for each renderer, a column for each font and size.
 
 use std::error::Error;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use image::imageops::{self, FilterType};
 use image::{GrayImage, Luma};
@@ -18,8 +18,6 @@ const ROW_GAP: usize = 10;
 const HEADINGS: usize = 24;
 /// From a caption's top to the middle of its letters.
 const CAPTION_MIDDLE: usize = 8;
-/// The enlargements, of which the first that fits is taken.
-const ZOOMS: [usize; 3] = [8, 7, 6];
 /// Room around a word's origin, in em: to the right, above and below, and to the left.
 const ROOM: (usize, usize, usize) = (8, 2, 1);
 
@@ -30,20 +28,22 @@ struct Cell {
     columns: Range<u32>,
 }
 
-/// Draws the word at these fonts and sizes.
+/// Draws the word at these fonts and sizes, each with its heading, enlarged as much as fits.
 pub(crate) fn draw(
     sheet: &mut Sheet,
-    cells: &[(&Typeface<'_>, u16)],
+    cells: &[(&Typeface<'_>, u16, String)],
     word: &str,
+    zooms: RangeInclusive<usize>,
     top: usize,
 ) -> Result<(), Box<dyn Error>> {
-    let largest = cells.iter().map(|(_, ppem)| *ppem).max().unwrap_or(0);
-    let cells = cells.iter().map(|(typeface, ppem)| Cell::new(typeface, *ppem, word, largest));
+    let largest = cells.iter().map(|(_, ppem, _)| *ppem).max().unwrap_or(0);
+    let cells =
+        cells.iter().map(|(typeface, ppem, heading)| Cell::new(typeface, *ppem, word, largest, heading));
     let cells = cells.collect::<Result<Vec<_>, _>>()?;
     let width: usize = cells.iter().map(|cell| cell.columns.len()).sum();
     let room = WIDTH - 2 * MARGIN - NAMES_WIDTH;
     let fits = |zoom: &usize| width * zoom + (cells.len() - 1) * GAP <= room;
-    let Some(zoom) = ZOOMS.into_iter().find(fits) else {
+    let Some(zoom) = zooms.rev().find(fits) else {
         return Err(
             format!("{word:?} has {width} pixels at all sizes together; choose a shorter --word").into()
         );
@@ -79,7 +79,13 @@ pub(crate) fn draw(
 
 impl Cell {
     /// Papers have room for `largest` pixels per em.
-    fn new(typeface: &Typeface<'_>, ppem: u16, word: &str, largest: u16) -> Result<Self, Box<dyn Error>> {
+    fn new(
+        typeface: &Typeface<'_>,
+        ppem: u16,
+        word: &str,
+        largest: u16,
+        heading: &str,
+    ) -> Result<Self, Box<dyn Error>> {
         let shaped = typeface.shape(word)?;
         let [right, above, left] = [ROOM.0, ROOM.1, ROOM.2].map(|em| em * usize::from(largest));
         let mut papers = Vec::new();
@@ -90,7 +96,7 @@ impl Cell {
             papers.push(paper);
         }
         let columns = covering(papers.iter().flat_map(|paper| ink(paper).map(|p| p.0)));
-        Ok(Self { heading: format!("{}, {ppem} px", typeface.name()?), papers, columns })
+        Ok(Self { heading: heading.to_owned(), papers, columns })
     }
 }
 

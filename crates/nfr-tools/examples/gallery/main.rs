@@ -1,10 +1,11 @@
 //! The pictures and figures of `docs/gallery`, which `docs/gallery/make` calls this for: text from the models, hinted, unhinted
 //! and autohinted.
 //!
-//! - `page OUT.png ORIGINAL NEURAL --text TEXT`: the text at 9 to 24 pixels per em, one pixel for a pixel, in four columns;
+//! - `page OUT.png ORIGINAL NEURAL --text TEXT`: the text at 9 to 24 pixels per em, one pixel for a pixel, in four columns; it prints how much these differ;
 //! - `grid OUT.png ORIGINAL NEURAL --word WORD`: a word at 11, 13 and 16 pixels per em with enlarged pixels, in four rows;
 //! - `first OUT.png ORIGINAL NEURAL ... --text TEXT --word WORD`: the same of several fonts in one picture;
-//! - `figures REPORT.json ORIGINAL NEURAL --text TEXT`: errors against the hinted bitmaps, bytes and time, as cells of a Markdown table;
+//! - `figures REPORT.json ORIGINAL NEURAL --text TEXT`: errors against the hinted bitmaps, bytes and time, as cells of two
+//!   Markdown tables, a line each;
 //! - `name ORIGINAL NEURAL`: the font's name.
 //!
 //! In all four renderings the origin of a glyph is at the same place: advances are the font's own, neither hinted nor rounded, origins are
@@ -32,7 +33,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use sheet::{MARGIN, Sheet};
-use typeface::{FontFiles, Typeface};
+use typeface::FontFiles;
 
 /// The sizes of a page, in pixels per em, and those of it that the first picture has and that are enlarged.
 const PAGE_SIZES: [u16; 6] = [9, 11, 13, 16, 20, 24];
@@ -120,14 +121,15 @@ fn run(command: &Command) -> Result<(), Box<dyn Error>> {
             let mut sheet = Sheet::new()?;
             let top = columns::headings(&mut sheet, MARGIN)?;
             columns::draw(&mut sheet, &files.open()?, text, &PAGE_SIZES, PAGE_LINES, top)?;
+            println!("{}", columns::differences(&sheet, top));
             sheet.write(out)
         }
         Command::Grid { out, font, word } => {
             let files = FontFiles::read(&font.original, &font.neural)?;
             let typeface = files.open()?;
-            let cells: Vec<(&Typeface<'_>, u16)> = FEW_SIZES.iter().map(|ppem| (&typeface, *ppem)).collect();
+            let cells = FEW_SIZES.map(|ppem| (&typeface, ppem, format!("{ppem} px")));
             let mut sheet = Sheet::new()?;
-            grid::draw(&mut sheet, &cells, word, MARGIN)?;
+            grid::draw(&mut sheet, &cells, word, 6..=8, MARGIN)?;
             sheet.write(out)
         }
         Command::First { out, fonts, text, word } => {
@@ -138,12 +140,18 @@ fn run(command: &Command) -> Result<(), Box<dyn Error>> {
             let files = files.collect::<Result<Vec<_>, _>>()?;
             let typefaces = files.iter().map(FontFiles::open).collect::<Result<Vec<_>, _>>()?;
             let mut sheet = Sheet::new()?;
-            let mut top = columns::headings(&mut sheet, MARGIN)?;
+            let first_row = columns::headings(&mut sheet, MARGIN)?;
+            let mut top = first_row;
             for typeface in &typefaces {
                 top = columns::draw(&mut sheet, typeface, text, &FEW_SIZES, 1, top)?;
             }
-            let cells: Vec<(&Typeface<'_>, u16)> = typefaces.iter().zip(FEW_SIZES).collect();
-            grid::draw(&mut sheet, &cells, word, top + MARGIN)?;
+            println!("{}", columns::differences(&sheet, first_row));
+            let cells = typefaces
+                .iter()
+                .zip(FEW_SIZES)
+                .map(|(typeface, ppem)| Ok((typeface, ppem, format!("{}, {ppem} px", typeface.name()?))));
+            let cells = cells.collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+            grid::draw(&mut sheet, &cells, word, 6..=6, top + MARGIN)?;
             sheet.write(out)
         }
         Command::Name { font } => {
@@ -152,7 +160,7 @@ fn run(command: &Command) -> Result<(), Box<dyn Error>> {
         }
         Command::Figures { report, font, text } => {
             let files = FontFiles::read(&font.original, &font.neural)?;
-            println!("{}", figures::cells(&files.open()?, text, report)?);
+            println!("{}", figures::cells(&files.open()?, text, report)?.join("\n"));
             Ok(())
         }
     }

@@ -40,6 +40,11 @@ impl Sheet {
         Ok(())
     }
 
+    /// How light a pixel is. Outside it is white.
+    pub(crate) fn light(&self, x: u32, y: u32) -> u8 {
+        self.picture.get_pixel_checked(x, y).map_or(255, |pixel| pixel.0[0])
+    }
+
     /// Writes a caption with its baseline 12 pixels below `top`.
     pub(crate) fn caption(&mut self, text: &str, left: usize, top: usize) -> Result<(), Box<dyn Error>> {
         let line = self.captions.line(text, 1)?;

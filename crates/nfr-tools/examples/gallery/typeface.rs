@@ -41,7 +41,7 @@ impl Typeface<'_> {
     pub(crate) fn name(&self) -> Result<String, Box<dyn Error>> {
         let names = self.pair.original().name()?;
         let mut full = names.name_record().iter().filter(|record| record.name_id() == NameId::FULL_NAME);
-        Ok(full.next_back().ok_or("the font has no name")?.string(names.string_data())?.to_string())
+        Ok(full.next().ok_or("the font has no name")?.string(names.string_data())?.to_string())
     }
 
     /// Shapes a text whose glyphs all have models.

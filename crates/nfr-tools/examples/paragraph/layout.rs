@@ -135,3 +135,47 @@ impl ShapedText {
         glyphs.map(|glyph| PositionedGlyph { x: glyph.x - start, ..*glyph }).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    const DEJAVU: &[u8] = include_bytes!("../../../../fonts/DejaVuSans.ttf");
+
+    fn text_of(line: &[PositionedGlyph], text: &str) -> String {
+        line.iter().filter_map(|glyph| text[glyph.at..].chars().next()).collect()
+    }
+
+    #[test]
+    fn lines_are_filled_word_by_word() {
+        let shaped = shape(DEJAVU, "one two three").unwrap();
+        let two = shaped.glyphs()[6];
+        let lines = shaped.lines(two.x + 2000);
+        let texts: Vec<String> = lines.iter().map(|line| text_of(line, "one two three")).collect();
+        assert_eq!(texts, ["onetwo", "three"]);
+        assert_eq!([lines[0][0].x, lines[1][0].x], [0, 0]);
+    }
+
+    #[test]
+    fn a_text_from_right_to_left_begins_at_the_right_of_the_first_line() {
+        let text = "سلام دنيا";
+        let shaped = shape(DEJAVU, text).unwrap();
+        let width = 6000;
+        let lines = shaped.lines(width);
+        let first: Vec<usize> = lines.iter().map(|line| line.iter().map(|g| g.at).min().unwrap()).collect();
+        assert_eq!(first, [0, "سلام ".len()], "the first word is in the first line");
+        let right = |line: &[PositionedGlyph]| line.last().unwrap().x;
+        assert!(lines.iter().all(|line| (width / 2..width).contains(&right(line))));
+    }
+
+    #[test]
+    fn a_line_ends_between_ideographs_but_not_before_their_punctuation() {
+        let text = "生れながら、";
+        // The font has none of these: each is the glyph of missing characters.
+        let lines = shape(DEJAVU, text).unwrap().lines(1);
+        let texts: Vec<String> = lines.iter().map(|line| text_of(line, text)).collect();
+        assert_eq!(texts, ["生", "れ", "な", "が", "ら、"]);
+    }
+}
