@@ -11,6 +11,7 @@
 
 #![allow(clippy::print_stdout)]
 
+mod ink;
 mod layout;
 mod renderer;
 
@@ -22,12 +23,12 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use image::{GrayImage, Luma};
-use nfr::Placement;
+use image::GrayImage;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::ppem::PpemList;
 
-use layout::{PositionedGlyph, ShapedText, shape};
+use ink::{blank, blend, split_position};
+use layout::{PositionedGlyph, ShapedText, check_models, shape};
 use renderer::Renderer;
 
 const TEXT: &str = "A page of text is where hinting shows: bars fall on whole pixels, bowls keep their height, and \
@@ -39,8 +40,6 @@ const TEXT: &str = "A page of text is where hinting shows: bars fall on whole pi
 const MARGIN: usize = 16;
 /// The size of the captions, and how dark they are.
 const CAPTION: (u16, u8) = (11, 150);
-/// No picture has more pixels.
-const MAX_PIXELS: usize = 64_000_000;
 /// Timed passes over the paragraph, of which the median is printed.
 const PASSES: usize = 15;
 
@@ -106,36 +105,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     picture.save(&args.out).map_err(|e| format!("cannot write {} ({e})", args.out.display()).into())
 }
 
-/// White paper.
-fn blank(width: usize, height: usize) -> Result<GrayImage, Box<dyn Error>> {
-    if width.saturating_mul(height) > MAX_PIXELS {
-        return Err(format!(
-            "the picture would have {width}×{height} pixels; choose fewer sizes or less text"
-        )
-        .into());
-    }
-    Ok(GrayImage::from_pixel(width.try_into()?, height.try_into()?, Luma([255])))
-}
-
 fn read(path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(|e| format!("cannot read {} ({e})", path.display()))
-}
-
-/// Names the first character that cannot be drawn.
-fn check_models(pair: &FontPair<'_>, text: &str, shaped: &ShapedText) -> Result<(), Box<dyn Error>> {
-    if shaped.glyphs().is_empty() {
-        return Err("the text has nothing to draw; give another one with --text".into());
-    }
-    if let Some(glyph) = shaped.glyphs().iter().find(|glyph| !pair.font().has_model(glyph.gid.into())) {
-        let character = text[glyph.at..].chars().next().unwrap_or_default();
-        return Err(format!(
-            "the character {character:?} (glyph {}) has no model; convert the font with it, or change --text",
-            glyph.gid
-        )
-        .into());
-    }
-    let gids: Vec<u16> = shaped.glyphs().iter().map(|glyph| glyph.gid).collect();
-    Ok(pair.check_outlines(&gids)?)
 }
 
 /// The paragraph at each size, one below the other, and the height of all.
@@ -164,13 +135,6 @@ fn units_per_em(pair: &FontPair<'_>) -> i32 {
 /// Pixels from a block's top to its text.
 fn caption_height() -> usize {
     usize::from(CAPTION.0) * 7 / 4
-}
-
-/// A position in whole pixels, and the subpixel offset in quarters of one.
-fn split_position(units: i32, ppem: u16, units_per_em: i32) -> (i64, f32) {
-    let pixels = f64::from(units) * f64::from(ppem) / f64::from(units_per_em);
-    let quarters = (pixels * 4.0).round() as i64;
-    (quarters.div_euclid(4), quarters.rem_euclid(4) as f32 / 4.0)
 }
 
 impl Block {
@@ -261,31 +225,4 @@ impl LineStyle {
         }
         Ok(())
     }
-}
-
-/// Blends a glyph into the picture, within these columns: where two glyphs overlap, the light that the first lets through
-/// meets the second.
-fn blend(
-    picture: &mut GrayImage,
-    [x, y]: [i64; 2],
-    place: &Placement,
-    coverage: &[u8],
-    columns: &Range<i64>,
-    darkness: u8,
-) {
-    let (left, top) = (x + i64::from(place.left), y - i64::from(place.top));
-    for (y, row) in (top..).zip(coverage.chunks_exact(place.width.max(1) as usize)) {
-        for (x, &coverage) in (left..).zip(row).filter(|(x, _)| columns.contains(x)) {
-            let at = u32::try_from(x).ok().zip(u32::try_from(y).ok());
-            if let Some(pixel) = at.and_then(|(x, y)| picture.get_pixel_mut_checked(x, y)) {
-                pixel.0[0] = product(pixel.0[0], 255 - product(coverage, darkness));
-            }
-        }
-    }
-}
-
-/// Two shares of 255, multiplied and rounded.
-fn product(a: u8, b: u8) -> u8 {
-    // At most 255.
-    ((u16::from(a) * u16::from(b) + 127) / 255) as u8
 }
