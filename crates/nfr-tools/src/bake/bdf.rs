@@ -147,7 +147,12 @@ fn average_width(strike: &Strike) -> i64 {
 }
 
 fn ascii(text: &str) -> String {
-    text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '?' }).collect()
+    let ascii = |c: char| match c {
+        c if c.is_ascii_graphic() => c,
+        c if c.is_whitespace() => ' ',
+        _ => '?',
+    };
+    text.chars().map(ascii).collect()
 }
 
 fn quoted(text: &str) -> String {

@@ -15,7 +15,7 @@ use crate::failure::Failure;
 const SEMI_BOLD: u16 = 600;
 
 /// A font, and what is taken of it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Face {
     /// `Liberation Sans`.
     pub(super) family: String,

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use nfr_convert::compare::report::glyph_count_text;
 use read_fonts::FontRef;
 
 use super::atlas::atlas;
@@ -91,8 +92,7 @@ pub(super) fn baked(job: &Job<'_>, path: &Path, warn: impl Fn(&str)) -> Result<V
     let mut files = Vec::new();
     for strike in job.strikes {
         let path = if job.strikes.len() > 1 { sized(path, strike.ppem) } else { path.to_owned() };
-        let of =
-            format!("{} glyphs at {} ppem, {} bits a pixel", strike.glyphs.len(), strike.ppem, strike.bits);
+        let of = of_strike(strike);
         match job.format {
             Format::Bdf => {
                 let bytes = bdf(strike, job.face).into_bytes();
@@ -103,6 +103,12 @@ pub(super) fn baked(job: &Job<'_>, path: &Path, warn: impl Fn(&str)) -> Result<V
         }
     }
     Ok(files)
+}
+
+/// `96 glyphs at 12 ppem, 4 bits a pixel`.
+fn of_strike(strike: &Strike) -> String {
+    let bits = if strike.bits == 1 { "1 bit" } else { &format!("{} bits", strike.bits) };
+    format!("{} at {} ppem, {bits} a pixel", glyph_count_text(strike.glyphs.len()), strike.ppem)
 }
 
 fn font(job: &Job<'_>, path: &Path, warn: impl Fn(&str)) -> Result<Made, Failure> {
@@ -116,10 +122,11 @@ fn font(job: &Job<'_>, path: &Path, warn: impl Fn(&str)) -> Result<Made, Failure
     let tables: strikes::Tables = tables(job.strikes);
     let lengths = (tables.eblc.len(), tables.ebdt.len());
     let bytes = sfnt::assemble(job.file, tables, job.strikes_only);
+    let sizes: Vec<String> = job.strikes.iter().map(|strike| strike.ppem.to_string()).collect();
     let summary = format!(
-        "{} glyphs at {} sizes; tables EBLC, {} bytes, and EBDT, {} bytes; the font has {} bytes, {} before",
-        job.face.gids.len(),
-        job.strikes.len(),
+        "{} at {} ppem; tables EBLC, {} bytes, and EBDT, {} bytes; the font has {} bytes, {} before",
+        glyph_count_text(job.face.gids.len()),
+        sizes.join(", "),
         lengths.0,
         lengths.1,
         bytes.len(),
@@ -154,7 +161,8 @@ fn c_file(
     let symbol = symbol(&stem);
     let made = lvgl(strike, face, &symbol)?;
     if made.left_out > 0 {
-        warn(&format!("warning: {} glyphs are left out, as no character stands for them", made.left_out));
+        let left_out = glyph_count_text(made.left_out);
+        warn(&format!("warning: {symbol} lacks {left_out}, for which no character stands"));
     }
     if made.is_large {
         warn(&format!("warning: {symbol} needs LV_FONT_FMT_TXT_LARGE, set to 1 in lv_conf.h"));

@@ -179,3 +179,77 @@ pub(super) fn check(strike: &Strike, face: &Face) -> Result<(), Failure> {
     fits("the ascent of a line", ascent.into(), signed)?;
     fits("the descent of a line", (-descent).into(), signed)
 }
+
+#[cfg(test)]
+mod tests {
+    use nfr::LineMetrics;
+
+    use super::*;
+
+    fn glyph(gid: u16, [left, top, width, height]: [i32; 4], advance: f32) -> Glyph {
+        let place = Placement { left, top, width: width as u32, height: height as u32 };
+        let mut glyph = Glyph::new(gid, place, &vec![255; place.area()], 8);
+        glyph.hinted_advance = advance;
+        glyph
+    }
+
+    fn strike(ppem: u16, bits: u8, glyphs: Vec<Glyph>) -> Strike {
+        Strike { ppem, bits, line: LineMetrics::default(), glyphs }
+    }
+
+    #[test]
+    fn what_a_byte_cannot_hold_is_named() {
+        let check = |ppem: u16, place: [i32; 4], advance: f32| {
+            check(&strike(ppem, 8, vec![glyph(7, place, advance)]), &Face::default())
+                .map_err(|e| format!("{e:?}"))
+        };
+        assert_eq!(check(255, [-128, 127, 255, 255], 255.0), Ok(()));
+        let cases = [
+            (256, [0, 0, 1, 1], 1.0, "the size at 256 ppem is 256, and EBLC holds 0 to 255"),
+            (20, [0, 0, 256, 1], 1.0, "the width of glyph 7 at 20 ppem is 256, and EBLC holds 0 to 255"),
+            (20, [0, 0, 1, 256], 1.0, "the height of glyph 7 at 20 ppem is 256, and EBLC holds 0 to 255"),
+            (
+                20,
+                [-129, 0, 1, 1],
+                1.0,
+                "the left side bearing of glyph 7 at 20 ppem is -129, and EBLC holds -128 to 127",
+            ),
+            (20, [0, 128, 1, 1], 1.0, "the top of glyph 7 at 20 ppem is 128, and EBLC holds -128 to 127"),
+            (
+                20,
+                [0, 0, 1, 1],
+                256.0,
+                "the advance width of glyph 7 at 20 ppem is 256, and EBLC holds 0 to 255",
+            ),
+        ];
+        for (ppem, place, advance, message) in cases {
+            let error = check(ppem, place, advance).expect_err(message);
+            assert!(error.contains(message), "{error}");
+        }
+    }
+
+    #[test]
+    fn bitmaps_that_freetype_would_misread_get_a_column_more_that_takes_no_byte() {
+        let bytes = |width: usize, bits: u8| (width * 2 * usize::from(bits)).div_ceil(8);
+        for (width, bits, stored) in [(3, 2, 4), (3, 4, 3), (3, 1, 3), (4, 2, 4), (2, 4, 2)] {
+            let glyph = glyph(7, [0, 2, width, 2], 4.0);
+            assert_eq!(stored_width(&glyph, bits), stored, "{width} columns at {bits} bits");
+            assert_eq!(bytes(width as usize, bits), bytes(stored, bits));
+        }
+    }
+
+    #[test]
+    fn subtables_end_at_wide_gaps_and_before_offsets_overflow() {
+        let large = |gid: u16| glyph(gid, [0, 100, 200, 200], 200.0);
+        let small = |gid: u16| glyph(gid, [0, 1, 1, 1], 1.0);
+        let strike = strike(100, 8, vec![small(3), small(12), small(22), large(23), large(24)]);
+        let mut ebdt = Vec::new();
+        let runs = add_bitmaps(&strike, &mut ebdt);
+        let gids = |run: &Run<'_>| run.glyphs.iter().map(|glyph| glyph.gid).collect::<Vec<_>>();
+        assert_eq!(runs.iter().map(gids).collect::<Vec<_>>(), [vec![3, 12], vec![22, 23], vec![24]]);
+        assert_eq!(runs[0].offsets, [0, 6, 6, 6, 6, 6, 6, 6, 6, 6, 12]);
+        assert_eq!((runs[2].at, ebdt.len()), (12 + 6 + 40005, 12 + 6 + 2 * 40005));
+        // Lists of subtables, each with as many offsets as glyphs and one more, in multiples of four bytes.
+        assert_eq!(index(&runs).len(), 3 * 8 + (8 + 24) + (8 + 8) + (8 + 4));
+    }
+}

@@ -14,8 +14,9 @@ use crate::failure::Failure;
 /// Bitmaps' offsets have 20 bits without `LV_FONT_FMT_TXT_LARGE`, advance widths 12, of which 4 are fractions.
 const SMALL_BITMAPS: usize = 1 << 20;
 const SMALL_ADVANCE: i32 = 1 << 8;
-/// What the structures take where pointers have 32 bits: a glyph's, a map's, and the font's two.
+/// What the structures take where pointers have 32 bits: a glyph's, one's of a large font, a map's, and the font's two.
 const GLYPH_BYTES: usize = 8;
+const LARGE_GLYPH_BYTES: usize = 16;
 const MAP_BYTES: usize = 24;
 const FONT_BYTES: usize = 24 + 36;
 const BYTES_A_LINE: usize = 16;
@@ -70,9 +71,10 @@ pub(super) fn lvgl(strike: &Strike, face: &Face, symbol: &str) -> Result<CFile, 
     }
     let bitmaps = Bitmaps::new(&glyphs, strike.bits);
     let is_large = bitmaps.length >= SMALL_BITMAPS || glyphs.iter().any(|(_, glyph)| !is_small(glyph));
+    let glyph_bytes = if is_large { LARGE_GLYPH_BYTES } else { GLYPH_BYTES };
     let lists: usize = maps.iter().filter(|map| !map.is_dense).map(|map| 2 * map.characters.len()).sum();
     let bytes =
-        bitmaps.length + (glyphs.len() + 1) * GLYPH_BYTES + maps.len() * MAP_BYTES + lists + FONT_BYTES;
+        bitmaps.length + (glyphs.len() + 1) * glyph_bytes + maps.len() * MAP_BYTES + lists + FONT_BYTES;
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = write_file(
@@ -240,7 +242,9 @@ fn write_font(out: &mut String, file: &File<'_>) -> std::fmt::Result {
     let inked = || file.glyphs.iter().map(|(_, glyph)| glyph).filter(|glyph| glyph.place.area() > 0);
     let above = inked().map(|glyph| glyph.place.top).fold(ascent, i32::max);
     let below = inked().map(|glyph| -glyph.bottom()).fold(descent, i32::max);
-    let underline = strike.line.underline_position.round() as i32;
+    // An underline does not touch the baseline, however small the size.
+    let underline = strike.line.underline_position;
+    let underline = if underline < 0.0 { underline.round().min(-1.0) } else { underline.round() } as i32;
     let thickness = (strike.line.underline_thickness.round() as i32).max(1);
     writeln!(
         out,
