@@ -1,11 +1,33 @@
 //! Strikes as the library draws them, and as others read them.
 
-#![allow(clippy::unwrap_used, unreachable_pub)]
+// Each test program uses a part of this.
+#![allow(dead_code, clippy::unwrap_used, unreachable_pub)]
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use freetype::face::LoadFlag;
 use nfr::{Font, Limits, Rasterizer};
+
+use super::common::{Directory, SANS, nfr_convert};
+
+/// Neighbours in the font, gaps of all lengths, a blank glyph, and at small sizes bitmaps of 3 columns and 2 or 3 rows.
+pub const TEXT: &str = "!\"'(),-./012 =ABCgjlmpqy|éŒ~";
+
+/// The directory and name of a converted font that several tests bake.
+fn converted() -> &'static (Directory, String) {
+    static CONVERTED: OnceLock<(Directory, String)> = OnceLock::new();
+    CONVERTED.get_or_init(|| {
+        let directory = Directory::new();
+        let output = directory.name("sans.ttf");
+        nfr_convert(&["--quiet", "--text", TEXT, SANS, &output]).succeeds();
+        (directory, output)
+    })
+}
+
+pub fn neural() -> &'static str {
+    &converted().1
+}
 
 /// A glyph's levels where they are not 0, by column and row from the baseline, upwards; and its advance width in pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -39,7 +39,7 @@ pub(super) fn maps(characters: &[u32]) -> Vec<Map> {
         let last = run.last().copied().unwrap_or(0);
         match maps.last_mut() {
             Some(map) if !is_dense && !map.is_dense && last - map.start() < MAX_RANGE => {
-                map.characters.extend(run)
+                map.characters.extend(run);
             }
             _ => maps.push(Map { first_glyph, characters: run.to_vec(), is_dense }),
         }
