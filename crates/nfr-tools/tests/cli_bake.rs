@@ -15,6 +15,7 @@ use read_fonts::tables::bitmap::{BitmapContent, BitmapMetrics};
 use read_fonts::types::Tag;
 use read_fonts::{FontRef, TableProvider};
 use serde_json::Value;
+use write_fonts::FontBuilder;
 use write_fonts::tables::cmap::Cmap;
 
 const DEPTHS: [u8; 4] = [1, 2, 4, 8];
@@ -104,11 +105,17 @@ fn the_other_tables_stay_and_checksums_are_right() {
 fn lines_are_as_high_as_the_fonts_and_baking_again_replaces() {
     let (directory, output) = bake("out.ttf", &["--ppem", "12,20"]);
     let again = directory.name("again.ttf");
+    // Which sizes stand for others, too.
+    let (data, mut scaled) = (fs::read(&output).unwrap(), FontBuilder::new());
+    scaled.add_raw(Tag::new(b"EBSC"), vec![0, 2, 0, 0, 0, 0, 0, 0]);
+    let output =
+        directory.write("scaled.ttf", &scaled.copy_missing_tables(FontRef::new(&data).unwrap()).build());
     let run = nfr(&["bake", &output, &again, "--ppem", "16", "--bits", "4"]).succeeds();
-    assert!(run.stderr.contains("bitmaps already (EBLC, EBDT); they are replaced"), "{}", run.stderr);
+    assert!(run.stderr.contains("bitmaps already (EBLC, EBDT, EBSC); they are replaced"), "{}", run.stderr);
     assert!(run.stdout.contains("EBLC") && run.stdout.contains("EBDT"), "{}", run.stdout);
     let data = fs::read(again).unwrap();
     let font = FontRef::new(&data).unwrap();
+    assert!(font.table_data(Tag::new(b"EBSC")).is_none());
     let eblc = font.eblc().unwrap();
     let [size] = eblc.bitmap_sizes() else { panic!("{} sizes", eblc.num_sizes()) };
     let expected = Expected::new(neural()).strike(16, 4);
