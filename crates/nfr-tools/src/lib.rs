@@ -5,6 +5,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bake;
 #[cfg(feature = "bench")]
 pub mod bench;
 pub mod convert;

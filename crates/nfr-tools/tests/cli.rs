@@ -24,7 +24,7 @@ fn help_and_version_succeed() {
     for args in [["--help"], ["--version"]] {
         assert_eq!((nfr(&args).code, nfr_convert(&args).code), (0, 0));
     }
-    for command in ["render", "diff", "verify", "info", "subset"] {
+    for command in ["render", "diff", "verify", "info", "subset", "bake"] {
         assert!(nfr(&[command, "--help"]).succeeds().stdout.contains("Usage: nfr "));
     }
 }

@@ -1,11 +1,11 @@
-//! Draws, compares, verifies, describes, subsets and times neural fonts.
+//! Draws, compares, verifies, describes, subsets, bakes and times neural fonts.
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use nfr_tools as cli;
 
-/// Draws, compares, verifies, describes, subsets and times neural fonts
+/// Draws, compares, verifies, describes, subsets, bakes and times neural fonts
 #[derive(Debug, Parser)]
 #[command(name = "nfr", version)]
 struct Args {
@@ -20,6 +20,7 @@ enum Command {
     Verify(cli::verify::Args),
     Info(cli::info::Args),
     Subset(cli::subset::Args),
+    Bake(cli::bake::Args),
     Bench(cli::bench::Args),
     Lab(cli::lab::Args),
 }
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Command::Verify(args) => cli::verify::run(&args),
         Command::Info(args) => cli::info::run(&args),
         Command::Subset(args) => cli::subset::run(&args),
+        Command::Bake(args) => cli::bake::run(&args),
         Command::Bench(args) => cli::bench::run(&args),
         Command::Lab(args) => cli::lab::run(&args),
     })
