@@ -34,7 +34,7 @@ const script = [
   block("specimen", part("demo/specimen.js", ["const { drawText, layoutText, paint } = parts.nfr;"])),
   block("page", part("demo/page.js", [
     "const { load } = parts.nfr, { specimen, wasm } = parts.assets;",
-    "const { bytes, onDrop, openFile } = parts.files, { Magnifier } = parts.magnifier;",
+    "const { bytes, onDrop, openFile } = parts.files, { Magnifier, ROWS } = parts.magnifier;",
     "const { breakLines, characterAt, lacking, render } = parts.specimen;",
   ])),
 ].join("\n");

@@ -2,8 +2,8 @@
 
 /** CSS pixels for a device pixel of the specimen. */
 const SCALE = 8;
-/** Rows that are shown. */
-const ROWS = 30;
+/** Rows of the specimen that are shown. */
+export const ROWS = 24;
 
 export class Magnifier {
   #stage;

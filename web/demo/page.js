@@ -3,7 +3,7 @@
 import { load } from "../nfr/nfr.js";
 import { specimen, wasm } from "./assets.js";
 import { bytes, onDrop, openFile } from "./files.js";
-import { Magnifier } from "./magnifier.js";
+import { Magnifier, ROWS } from "./magnifier.js";
 import { breakLines, characterAt, lacking, render } from "./specimen.js";
 
 const WATERFALL = [8, 9, 10, 11, 12, 13, 14, 16, 18, 20, 24, 28, 32];
@@ -39,6 +39,7 @@ function drawNeural() {
   const width = inDevice(stage.querySelector(".sheet").clientWidth);
   const look = { ...shown, ink: ink() };
   layout = breakLines(shown.font, text.value, ppem, width);
+  layout.height = Math.max(layout.height, ROWS);
   look.error = drawPanel(KINDS[0], look);
   const device = devicePixelRatio === 1 ? "" : ` = ${round(ppem)} device pixels`;
   element("size-value").textContent = `${size.value} px${device}`;
@@ -75,7 +76,10 @@ function makeWaterfall() {
     label.textContent = pixels;
     const canvas = document.createElement("canvas");
     canvas.setAttribute("role", "img");
-    item.append(label, canvas);
+    // In a box of its own, so that its lower edge is a baseline.
+    const box = document.createElement("div");
+    box.append(canvas);
+    item.append(label, box);
     element("waterfall").append(item);
   }
 }
