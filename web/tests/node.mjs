@@ -191,6 +191,18 @@ const tests = {
     assert.ok(refused > 50 && refused < 500);
     return `${refused} of 500 refused`;
   },
+  async "after a trap nothing is called any more"() {
+    const { Font } = await import(pathToFileURL(`${process.argv[2]}/nfr/font.js`));
+    let calls = 0;
+    const nfr_alloc = () => {
+      calls++;
+      throw new WebAssembly.RuntimeError("unreachable");
+    };
+    const state = { exports: { nfr_alloc }, broken: false };
+    const registry = new FinalizationRegistry(() => {});
+    for (let i = 0; i < 2; i++) assert.throws(() => new Font(state, registry, new Uint8Array(4)), { code: "NFR_INTERNAL" });
+    assert.equal(calls, 1);
+  },
   "a large file that is no font is refused"() {
     assert.throws(() => nfr.open(new Uint8Array(50 << 20)), { code: "NFR_NOT_A_FONT" });
   },
