@@ -94,6 +94,8 @@ pub enum Error {
         /// The subpixel offset that was asked for.
         offset: [f32; 2],
     },
+    /// A network draws this glyph, and it has no coverage of subpixels.
+    NetworkSubpixels(u32),
     /// A size that is not above 0 and at most [`DrawOptions::MAX_PPEM`](crate::DrawOptions::MAX_PPEM).
     InvalidSize(f32),
     /// A subpixel offset beyond [`DrawOptions::MAX_OFFSET`](crate::DrawOptions::MAX_OFFSET), or not a number.
@@ -196,6 +198,9 @@ impl fmt::Display for Error {
                 f,
                 "a subpixel offset of {x}, {y} pixels for glyph {glyph}, whose network draws at whole pixels"
             ),
+            Self::NetworkSubpixels(glyph) => {
+                write!(f, "glyph {glyph} is drawn by a network, which has no coverage of subpixels")
+            }
             Self::InvalidSize(ppem) => {
                 write!(f, "{ppem} ppem is outside 0–{MAX_PPEM}")
             }

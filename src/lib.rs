@@ -23,6 +23,7 @@ extern crate std;
 mod bitmap;
 mod constants;
 mod error;
+mod lcd;
 mod limits;
 mod model;
 mod network;
@@ -35,6 +36,7 @@ mod target;
 
 pub use bitmap::{Bitmap, BitmapRef};
 pub use error::Error;
+pub use lcd::{Lcd, LcdBitmap, LcdBitmapRef, LcdFilter, SubpixelOrder};
 pub use limits::{Limits, MissingModel};
 pub use options::DrawOptions;
 pub use placement::Placement;

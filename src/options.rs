@@ -15,6 +15,21 @@ pub struct DrawOptions {
     pub(crate) ppem: f32,
     pub(crate) offset: [f32; 2],
     pub(crate) hinting: bool,
+    pub(crate) sampling: Sampling,
+}
+
+/// Where coverage is sampled: how subpixels are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sampling {
+    /// Samples of a pixel along x and y: the bitmap's columns and rows are so many times narrower.
+    pub(crate) stretch: [i32; 2],
+    /// What the glyph is moved by, beside its offset, in pixels.
+    pub(crate) shift: [f32; 2],
+}
+
+impl Sampling {
+    /// One sample a pixel.
+    pub(crate) const PIXELS: Self = Self { stretch: [1; 2], shift: [0.0; 2] };
 }
 
 impl DrawOptions {
@@ -25,7 +40,7 @@ impl DrawOptions {
 
     /// A size in pixels per em, above 0 and at most [`Self::MAX_PPEM`]; it may be fractional. No offset, hinted.
     pub fn new(ppem: f32) -> Self {
-        Self { ppem, offset: [0.0; 2], hinting: true }
+        Self { ppem, offset: [0.0; 2], hinting: true, sampling: Sampling::PIXELS }
     }
 
     /// Sets the subpixel offset: how far the glyph is moved in pixels, x to the right and y up. It is what is left of a
@@ -61,6 +76,11 @@ impl DrawOptions {
     /// How a font whose models have this scale is hinted at the size.
     pub(crate) fn size(&self, scale: Scale) -> HintedSize {
         if self.hinting { scale.at(self.ppem) } else { HintedSize::plain(self.ppem) }
+    }
+
+    /// How far the glyph is moved, in pixels.
+    pub(crate) fn moved(&self) -> [f32; 2] {
+        [0, 1].map(|axis| self.offset[axis] + self.sampling.shift[axis])
     }
 
     /// Checks the size and the offset.

@@ -18,6 +18,17 @@ impl Placement {
     pub fn area(&self) -> usize {
         self.width as usize * self.height as usize
     }
+
+    /// The same in pixels that are so many times narrower and lower.
+    pub(crate) fn stretched(self, by: [i32; 2]) -> Self {
+        let [x, y] = by.map(i32::unsigned_abs);
+        Self {
+            left: self.left.saturating_mul(by[0]),
+            top: self.top.saturating_mul(by[1]),
+            width: self.width.saturating_mul(x),
+            height: self.height.saturating_mul(y),
+        }
+    }
 }
 
 /// The box around two bitmaps; one without pixels takes no room.

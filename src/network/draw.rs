@@ -5,7 +5,7 @@ use super::layout::NetworkSize;
 use crate::bitmap::Canvas;
 use crate::error::Error;
 use crate::limits::Budget;
-use crate::options::DrawOptions;
+use crate::options::{DrawOptions, Sampling};
 use crate::placement::Placement;
 
 impl Network {
@@ -13,8 +13,12 @@ impl Network {
     ///
     /// # Errors
     ///
-    /// `NetworkSize` for a size that the network was not trained for, `NetworkOffset` for an offset that is not whole.
+    /// `NetworkSize` for a size that the network was not trained for, `NetworkOffset` for an offset that is not whole,
+    /// `NetworkSubpixels` for subpixels.
     pub(crate) fn placement(&self, glyph: u32, options: DrawOptions) -> Result<Placement, Error> {
+        if options.sampling != Sampling::PIXELS {
+            return Err(Error::NetworkSubpixels(glyph));
+        }
         let (_, size) = self.size(glyph, options.ppem)?;
         let offset = options.offset.map(|pixels| pixels as i32);
         if [0, 1].iter().any(|&axis| offset[axis] as f32 != options.offset[axis]) {

@@ -56,11 +56,18 @@ impl Polygons {
             + self.ends.capacity() * size_of::<usize>()
     }
 
-    /// Adds an outline whose points are at `places`, in 1/64 pixel, moved by `offset` in the same. Contours of one or two points, which
+    /// Adds an outline whose points are at `places`, in 1/64 pixel, moved by `offset` in the same, and made `stretch` times as wide and
+    /// high. Contours of one or two points, which
     /// fonts use as anchors, have no area and are left out.
-    pub(super) fn add(&mut self, outline: &OutlinePoints, places: &[Vec<i32>; 2], offset: Point) {
+    pub(super) fn add(
+        &mut self,
+        outline: &OutlinePoints,
+        places: &[Vec<i32>; 2],
+        offset: Point,
+        stretch: Point,
+    ) {
         for contour in outline.contours().filter(|contour| contour.len() > 2) {
-            self.add_contour(outline, places, contour, offset);
+            self.add_contour(outline, places, contour, offset, stretch);
         }
     }
 
@@ -70,10 +77,12 @@ impl Polygons {
         places: &[Vec<i32>; 2],
         contour: Range<usize>,
         offset: Point,
+        stretch: Point,
     ) {
         let [Some(x), Some(y)] = places.each_ref().map(|places| places.get(contour.clone())) else { return };
         let Some(on_curve) = outline.on_curve.get(contour) else { return };
-        let point = |k: usize| [x[k].wrapping_add(offset[0]), y[k].wrapping_add(offset[1])];
+        let moved = |v: i32, axis: usize| v.wrapping_add(offset[axis]).wrapping_mul(stretch[axis]);
+        let point = |k: usize| [moved(x[k], 0), moved(y[k], 1)];
         let Some(last) = on_curve.len().checked_sub(1) else { return };
         // A contour begins at its first point on the curve, or else between its last and its first point.
         let first = on_curve.iter().position(|on| *on);

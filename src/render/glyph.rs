@@ -54,8 +54,8 @@ pub(super) struct Outlines {
 /// positions.
 #[derive(Debug, Default)]
 pub(super) struct Flattened {
-    ppem: f32,
-    hinting: bool,
+    /// The size, whether it is hinted, and the samples of a pixel along x and y.
+    drawn_as: (f32, bool, [i32; 2]),
     polygons: Polygons,
 }
 
@@ -187,7 +187,7 @@ impl Glyph {
                     let size = options.size(model.scale());
                     whole = union(whole, model.placement_at(&size, position(origin, &size, options))?);
                 }
-                whole
+                whole.stretched(options.sampling.stretch)
             }
             #[cfg(feature = "networks")]
             Drawn::Network(network) => network.placement(self.glyph, options)?,
@@ -268,13 +268,14 @@ impl Glyph {
         if let [(model, origin)] = parts
             && !model.is_empty()
         {
-            return draw_one(model, &size, position(origin, &size, options), scratch, budget, room);
+            let at = position(origin, &size, options);
+            return draw_one(model, &size, options.sampling.stretch, at, scratch, budget, room);
         }
         let placement = self.placement(options)?;
         let Some(mut canvas) = room(placement)? else { return Ok(None) };
         budget.spend(placement.area() as u64)?;
         let parts = parts.iter().map(|(model, origin)| (&**model, position(origin, &size, options)));
-        draw(&parts, &size, placement, scratch, &mut canvas, budget)?;
+        draw(&parts, &size, options.sampling.stretch, placement, scratch, &mut canvas, budget)?;
         Ok(Some(placement))
     }
 
@@ -315,16 +316,17 @@ impl Outlines {
         budget: &mut Budget,
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
-        if (kept.ppem, kept.hinting) == (options.ppem, options.hinting) {
+        let drawn_as = (options.ppem, options.hinting, options.sampling.stretch);
+        if kept.drawn_as == drawn_as {
             return draw_polygons(&kept.polygons, options, scratch, budget, room);
         }
         let Some((size, parts)) = self.at(options) else {
             return Ok(room(Placement::default())?.map(|_| Placement::default()));
         };
-        flatten(parts, &size, scratch, budget)?;
+        flatten(parts, &size, options.sampling.stretch, scratch, budget)?;
         let polygons = core::mem::take(&mut scratch.polygons);
         if polygons.vertices[0].len() <= MAX_KEPT {
-            (kept.ppem, kept.hinting) = (options.ppem, options.hinting);
+            kept.drawn_as = drawn_as;
             kept.polygons.copy_from(&polygons);
         }
         let drawn = draw_polygons(&polygons, options, scratch, budget, room);
@@ -345,6 +347,6 @@ pub(super) fn fresh<'b>(
 
 /// The position of a part's origin in pixels.
 fn position(origin: &Origin, size: &HintedSize, options: DrawOptions) -> [f32; 2] {
-    let at = origin.at(size);
-    [0, 1].map(|axis| at[axis] + options.offset[axis])
+    let (at, moved) = (origin.at(size), options.moved());
+    [0, 1].map(|axis| at[axis] + moved[axis])
 }

@@ -6,6 +6,7 @@ mod draw;
 mod flatten;
 mod font;
 mod glyph;
+mod lcd;
 mod metrics;
 mod outline;
 mod rasterizer;

@@ -58,11 +58,12 @@ pub(super) fn draw_plain<'b>(
         room(placement)
     };
     let mut budget = Budget::new(glyph, limits);
-    flatten(core::iter::once((&model, [0; 2])), &size, scratch, &mut budget)?;
+    flatten(core::iter::once((&model, [0; 2])), &size, options.sampling.stretch, scratch, &mut budget)?;
     draw_flattened(options, scratch, &mut budget, room)
 }
 
-/// Hints outlines at a size, each moved by an offset in 1/64 pixel, and makes them the polygons of `scratch`.
+/// Hints outlines at a size, each moved by an offset in 1/64 pixel, and makes them the polygons of `scratch`, so many times as wide
+/// and as high.
 ///
 /// # Errors
 ///
@@ -70,6 +71,7 @@ pub(super) fn draw_plain<'b>(
 pub(super) fn flatten<'m>(
     models: impl Iterator<Item = (&'m OutlineModel, [i32; 2])>,
     size: &HintedSize,
+    stretch: [i32; 2],
     scratch: &mut Scratch,
     budget: &mut Budget,
 ) -> Result<(), Error> {
@@ -78,7 +80,7 @@ pub(super) fn flatten<'m>(
     for (model, offset) in models {
         hint(model, size, points);
         check_reach(points, offset)?;
-        polygons.add(&model.points, points, offset);
+        polygons.add(&model.points, points, offset, stretch);
         if polygons.are_too_many() {
             budget.spend(u64::MAX)?;
         }
@@ -138,7 +140,8 @@ pub(super) fn draw_polygons<'b>(
     budget: &mut Budget,
     room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
 ) -> Result<Option<Placement>, Error> {
-    let offset = options.offset.map(|pixels| round(pixels * UNIT as f32));
+    let (stretch, moved) = (options.sampling.stretch, options.moved());
+    let offset = [0, 1].map(|axis| round(moved[axis] * UNIT as f32) * stretch[axis]);
     let placement = place(polygons, offset)?;
     let Some(mut canvas) = room(placement)? else { return Ok(None) };
     budget.spend(placement.area() as u64)?;

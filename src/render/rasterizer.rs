@@ -33,7 +33,7 @@ pub struct Rasterizer {
     decoder: Decoder,
     missing: MissingModel,
     cache: Cache,
-    scratch: Scratch,
+    pub(super) scratch: Scratch,
     /// The bitmap that [`Self::draw`] lends.
     pixels: Vec<u8>,
 }
@@ -215,7 +215,7 @@ impl Rasterizer {
         })
     }
 
-    fn draw_with<'b>(
+    pub(super) fn draw_with<'b>(
         &mut self,
         glyph: u32,
         options: DrawOptions,

@@ -20,4 +20,7 @@ pub struct Scratch {
     /// Of outlines: hinted points in 1/64 pixel.
     pub(super) outline: [Vec<i32>; 2],
     pub(super) polygons: flatten::Polygons,
+    /// Of subpixels: their coverage, before it is filtered or joined, and the pixels that they make.
+    pub(super) subpixels: Vec<u8>,
+    pub(super) lcd: Vec<[u8; 3]>,
 }

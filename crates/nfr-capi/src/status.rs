@@ -113,9 +113,10 @@ fn of(error: &Error) -> nfr_status {
         Error::InvalidOffset(_) => NFR_INVALID_OFFSET,
         Error::BufferTooSmall { .. } => NFR_BUFFER_TOO_SMALL,
         Error::BitmapTooLarge { .. } | Error::DecodedTooLarge { .. } | Error::TooMuchWork { .. } => NFR_LIMIT,
-        Error::NetworksNotBuilt(_) | Error::NetworkSize { .. } | Error::NetworkOffset { .. } => {
-            NFR_UNSUPPORTED
-        }
+        Error::NetworksNotBuilt(_)
+        | Error::NetworkSize { .. }
+        | Error::NetworkOffset { .. }
+        | Error::NetworkSubpixels(_) => NFR_UNSUPPORTED,
         // A variant that was added to the library and not here.
         _ => NFR_INTERNAL,
     }

@@ -107,9 +107,10 @@ impl From<nfr::Error> for Error {
                 Ok(glyph) => Self::MissingGlyph(glyph),
                 Err(_) => Self::InvalidParameter(error.to_string()),
             },
-            Cause::NetworksNotBuilt(_) | Cause::NetworkSize { .. } | Cause::NetworkOffset { .. } => {
-                Self::Unsupported(error.to_string())
-            }
+            Cause::NetworksNotBuilt(_)
+            | Cause::NetworkSize { .. }
+            | Cause::NetworkOffset { .. }
+            | Cause::NetworkSubpixels(_) => Self::Unsupported(error.to_string()),
             Cause::InvalidSize(_) | Cause::InvalidOffset(_) | Cause::BufferTooSmall { .. } => {
                 Self::InvalidParameter(error.to_string())
             }

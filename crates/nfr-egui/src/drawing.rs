@@ -115,6 +115,7 @@ fn is_damage(error: &Error) -> bool {
             | Error::BitmapTooLarge { .. }
             | Error::NetworkSize { .. }
             | Error::NetworkOffset { .. }
+            | Error::NetworkSubpixels(_)
     )
 }
 

@@ -53,6 +53,7 @@ fn drawn<const MOST: usize>(models: &[Placed<'_>], ppem: f32, place: Placement) 
     draw_in_strips::<MOST>(
         &models.iter().copied(),
         &SCALE.at(ppem),
+        [1; 2],
         place,
         &mut scratch,
         &mut canvas,
@@ -173,6 +174,7 @@ fn a_drawing_that_exceeds_its_budget_leaves_nothing_in_the_scratch() {
         let given_up = draw(
             &models.iter().copied(),
             &SCALE.at(ppem),
+            [1; 2],
             place,
             &mut scratch,
             &mut canvas,
