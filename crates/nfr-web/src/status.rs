@@ -26,7 +26,10 @@ pub(crate) fn of(error: &Error) -> u32 {
         Error::InvalidOffset(_) => 13,
         Error::BufferTooSmall { .. } => 14,
         Error::BitmapTooLarge { .. } | Error::DecodedTooLarge { .. } | Error::TooMuchWork { .. } => 15,
-        Error::NetworksNotBuilt(_) | Error::NetworkSize { .. } | Error::NetworkOffset { .. } => 16,
+        Error::NetworksNotBuilt(_)
+        | Error::NetworkSize { .. }
+        | Error::NetworkOffset { .. }
+        | Error::NetworkSubpixels(_) => 16,
         // A variant that was added to the library and not here.
         _ => 17,
     }
