@@ -43,7 +43,7 @@ _CODES: dict[type[Error], str] = {
     FontError: "not_a_font no_such_font missing_table malformed_table units_per_em not_converted unknown_version"
     " malformed_models renumbered",
     GlyphError: "malformed_model model_too_large stale_model no_such_glyph no_such_character malformed_outline"
-    " networks_not_built network_size network_offset network_subpixels",
+    " fields_not_built networks_not_built network_size network_offset network_subpixels",
     MissingModelError: "missing_model",
     LimitError: "bitmap_too_large decoded_too_large too_much_work line_too_large",
     ArgumentError: "invalid_size invalid_offset",

@@ -114,6 +114,7 @@ fn cause(error: &Error) -> (&'static str, Values) {
         Error::NoSuchGlyph(of) => ("no_such_glyph", vec![glyph(of)]),
         Error::MissingModel(of) => ("missing_model", vec![glyph(of)]),
         Error::MalformedOutline(of) => ("malformed_outline", vec![glyph(of)]),
+        Error::FieldsNotBuilt(of) => ("fields_not_built", vec![glyph(of)]),
         Error::NetworksNotBuilt(of) => ("networks_not_built", vec![glyph(of)]),
         Error::NetworkSize { glyph: of, ppem } => {
             ("network_size", vec![glyph(of), ("ppem", Value::Real(ppem))])
