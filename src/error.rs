@@ -78,6 +78,8 @@ pub enum Error {
     MissingModel(u32),
     /// The glyph's outline cannot be read.
     MalformedOutline(u32),
+    /// A field draws this glyph, and this build of the crate lacks the feature `fields`.
+    FieldsNotBuilt(u32),
     /// A network draws this glyph, and this build of the crate lacks the feature `networks`.
     NetworksNotBuilt(u32),
     /// The network that draws this glyph was not trained for this size.
@@ -187,6 +189,10 @@ impl fmt::Display for Error {
             Self::NoSuchGlyph(glyph) => write!(f, "the font has no glyph {glyph}"),
             Self::MissingModel(glyph) => write!(f, "glyph {glyph} has no model in this font"),
             Self::MalformedOutline(glyph) => write!(f, "the outline of glyph {glyph} cannot be read"),
+            Self::FieldsNotBuilt(glyph) => write!(
+                f,
+                "glyph {glyph} is drawn by a field, and this program was built without nfr's feature `fields`"
+            ),
             Self::NetworksNotBuilt(glyph) => write!(
                 f,
                 "glyph {glyph} is drawn by a network, and this program was built without nfr's feature `networks`"

@@ -60,6 +60,7 @@ impl Budget {
     }
 
     /// For callers that draw what they have made themselves.
+    #[cfg(feature = "fields")]
     pub(crate) fn unlimited() -> Self {
         Self { glyph: 0, spent: 0, limit: u64::MAX }
     }

@@ -20,6 +20,7 @@ impl Placement {
     }
 
     /// The same in pixels that are so many times narrower and lower.
+    #[cfg(feature = "fields")]
     pub(crate) fn stretched(self, by: [i32; 2]) -> Self {
         let [x, y] = by.map(i32::unsigned_abs);
         Self {

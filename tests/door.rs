@@ -346,6 +346,19 @@ fn characters_are_those_of_the_character_map() {
     assert_eq!(font.glyph_for_char('\u{1F600}'), None);
 }
 
+#[cfg(not(feature = "fields"))]
+#[test]
+fn a_glyph_of_a_field_says_what_this_build_lacks() {
+    for name in ["sans", "mono"] {
+        let font = font(name);
+        for glyph in "gé".chars().map(|c| font.glyph_for_char(c).unwrap()) {
+            let error = Rasterizer::new(&font).render(glyph, 20.0).unwrap_err();
+            assert_eq!(error, Error::FieldsNotBuilt(glyph));
+            assert!(error.to_string().contains("`fields`"));
+        }
+    }
+}
+
 #[cfg(not(feature = "networks"))]
 #[test]
 fn a_glyph_of_a_network_says_what_this_build_lacks() {

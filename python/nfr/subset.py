@@ -2,12 +2,16 @@
 
 import sys
 
-from fontTools import subset
-
 import nfr  # noqa: F401  registers the table
 
 
 def main(args=None):
+    try:
+        from fontTools import subset
+    except ModuleNotFoundError as missing:
+        if missing.name != "fontTools":
+            raise
+        sys.exit("fontTools is not installed: pip install fonttools")
     return subset.main(args)
 
 

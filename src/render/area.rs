@@ -68,6 +68,7 @@ impl Area {
 
     /// Adds a polygon, given by its vertices' coordinates along x and y, in units from the upper left corner, y down. Its
     /// vertices lie within the bitmap; with `CLIP`, only between its upper and its lower border.
+    #[cfg(feature = "fields")]
     pub(super) fn polygon<const CLIP: bool>(&mut self, x: &[i32], y: &[i32]) {
         let bottom = (self.height as i32) << SHIFT;
         self.closed::<CLIP>(x.iter().zip(y).map(|(x, y)| [*x, bottom - y]));

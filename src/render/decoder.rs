@@ -10,7 +10,10 @@ use super::glyph::{Drawn, Glyph, Outlines, SharedModel};
 use super::stored_outline::Memory;
 use crate::error::Error;
 use crate::limits::Limits;
-use crate::model::compose::{Origin, Part};
+#[cfg(feature = "fields")]
+use crate::model::compose::Origin;
+use crate::model::compose::Part;
+#[cfg(feature = "fields")]
 use crate::model::gridfit::GridFit;
 #[cfg(feature = "networks")]
 use crate::network::Network;
@@ -68,7 +71,7 @@ impl Decoder {
         if glyph >= self.font.glyph_count() {
             return Err(Error::NoSuchGlyph(glyph));
         }
-        let (table, scale, limits) = (self.font.table()?, self.font.scale(), self.limits);
+        let (table, limits) = (self.font.table()?, self.limits);
         table.check_glyph(glyph)?;
         let (font, memory) = (&self.font, &mut self.memory);
         let mut outline = |part: u32| match known(part) {
@@ -76,13 +79,6 @@ impl Decoder {
                 Ok(model)
             }
             _ => font.outline_model(part, sizes.clone(), &limits, memory).map(Arc::new),
-        };
-        let model = |part: u32| match known(part) {
-            Some(SharedModel::Field(model)) => Ok(model),
-            _ => {
-                let weights = table.weights(part, scale, limits.decoded_bytes)?;
-                GridFit::new(&weights, scale).map(Arc::new).map_err(|damage| damage.of(part))
-            }
         };
         let drawn = if table.is_network(glyph) {
             self::network(&table, glyph, &limits)?
@@ -102,20 +98,8 @@ impl Decoder {
                 Advances::Own(advances) => advances,
             };
             Drawn::Outlines(Outlines { parts, advances })
-        } else if table.is_composed(glyph) {
-            let offsets = match self.offsets.take() {
-                Some(offsets) => offsets,
-                None => table.part_offsets(glyph, scale, limits.decoded_bytes)?,
-            };
-            let parts = table.parts(glyph, scale, &offsets);
-            self.offsets = Some(offsets);
-            let placed = parts?.into_iter().map(|part| {
-                let origin = Origin::new(&part, scale).map_err(|damage| damage.of(glyph))?;
-                Ok((model(part.gid.into())?, origin))
-            });
-            Drawn::Fields(placed.collect::<Result<_, Error>>()?)
         } else {
-            Drawn::Fields(vec![(model(glyph)?, Origin::default())])
+            fields(&self.font, glyph, &limits, &mut self.offsets, known)?
         };
         let decoded = Glyph::new(glyph, limits, drawn);
         limits.check_decoded(glyph, decoded.memory())?;
@@ -132,6 +116,49 @@ fn network(table: &crate::table::Table<'_>, glyph: u32, limits: &Limits) -> Resu
 #[cfg(not(feature = "networks"))]
 fn network(_: &crate::table::Table<'_>, glyph: u32, _: &Limits) -> Result<Drawn, Error> {
     Err(Error::NetworksNotBuilt(glyph))
+}
+
+#[cfg(feature = "fields")]
+fn fields(
+    font: &Font,
+    glyph: u32,
+    limits: &Limits,
+    part_offsets: &mut Option<Vec<i8>>,
+    known: impl Fn(u32) -> Option<SharedModel>,
+) -> Result<Drawn, Error> {
+    let (table, scale) = (font.table()?, font.scale());
+    let model = |part: u32| match known(part) {
+        Some(SharedModel::Field(model)) => Ok(model),
+        _ => {
+            let weights = table.weights(part, scale, limits.decoded_bytes)?;
+            GridFit::new(&weights, scale).map(Arc::new).map_err(|damage| damage.of(part))
+        }
+    };
+    if !table.is_composed(glyph) {
+        return Ok(Drawn::Fields(vec![(model(glyph)?, Origin::default())]));
+    }
+    let offsets = match part_offsets.take() {
+        Some(offsets) => offsets,
+        None => table.part_offsets(glyph, scale, limits.decoded_bytes)?,
+    };
+    let parts = table.parts(glyph, scale, &offsets);
+    *part_offsets = Some(offsets);
+    let placed = parts?.into_iter().map(|part| {
+        let origin = Origin::new(&part, scale).map_err(|damage| damage.of(glyph))?;
+        Ok((model(part.gid.into())?, origin))
+    });
+    Ok(Drawn::Fields(placed.collect::<Result<_, Error>>()?))
+}
+
+#[cfg(not(feature = "fields"))]
+fn fields(
+    _: &Font,
+    glyph: u32,
+    _: &Limits,
+    _: &mut Option<Vec<i8>>,
+    _: impl Fn(u32) -> Option<SharedModel>,
+) -> Result<Drawn, Error> {
+    Err(Error::FieldsNotBuilt(glyph))
 }
 
 impl Font {

@@ -6,6 +6,7 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
+#[cfg(feature = "fields")]
 use super::draw::{draw, draw_one};
 use super::flatten::Polygons;
 use super::outline::{draw_polygons, flatten, leftmost};
@@ -13,14 +14,19 @@ use super::scratch::Scratch;
 use crate::bitmap::{Bitmap, Canvas};
 use crate::error::Error;
 use crate::limits::{Budget, Limits};
-use crate::model::compose::{Origin, Part};
+#[cfg(feature = "fields")]
+use crate::model::compose::Origin;
+use crate::model::compose::Part;
+#[cfg(feature = "fields")]
 use crate::model::gridfit::GridFit;
 use crate::model::outline::OutlineModel;
 use crate::model::sizes::HintedSize;
 #[cfg(feature = "networks")]
 use crate::network::Network;
 use crate::options::DrawOptions;
-use crate::placement::{Placement, union};
+use crate::placement::Placement;
+#[cfg(feature = "fields")]
+use crate::placement::union;
 
 pub use hinted::HintedOutline;
 
@@ -37,6 +43,7 @@ pub struct Glyph {
 pub(super) enum Drawn {
     /// Outlines, which draw all sizes up to the ones that they are decoded to.
     Outlines(Outlines),
+    #[cfg(feature = "fields")]
     Fields(Vec<(Arc<GridFit>, Origin)>),
     #[cfg(feature = "networks")]
     Network(Arc<Network>),
@@ -73,6 +80,7 @@ const MAX_KEPT: usize = 256;
 #[derive(Debug, Clone)]
 pub(super) enum SharedModel {
     Outline(Arc<OutlineModel>),
+    #[cfg(feature = "fields")]
     Field(Arc<GridFit>),
 }
 
@@ -82,6 +90,7 @@ impl Glyph {
     }
 
     /// A glyph that is composed of fields, each with its origin, with the default limits.
+    #[cfg(feature = "fields")]
     pub fn of_models(parts: Vec<(Arc<GridFit>, Origin)>) -> Self {
         Self::new(0, Limits::default(), Drawn::Fields(parts))
     }
@@ -104,6 +113,7 @@ impl Glyph {
             Drawn::Outlines(outlines) => {
                 outlines.parts.first().map(|(model, _)| SharedModel::Outline(model.clone()))
             }
+            #[cfg(feature = "fields")]
             Drawn::Fields(parts) => parts.first().map(|(model, _)| SharedModel::Field(model.clone())),
             #[cfg(feature = "networks")]
             Drawn::Network(_) => None,
@@ -112,19 +122,29 @@ impl Glyph {
 
     /// Whether a size is decoded.
     pub(super) fn has_size(&self, options: DrawOptions) -> bool {
-        match &self.drawn {
-            Drawn::Outlines(outlines) => outlines.parts.iter().all(|(model, _)| {
+        self.outlines().is_none_or(|outlines| {
+            outlines.parts.iter().all(|(model, _)| {
                 let size = options.size(model.scale);
                 size.strength == 0.0 || model.has_size(size.index)
-            }),
-            _ => true,
+            })
+        })
+    }
+
+    /// The outlines that the glyph is drawn from. None for one that fields or a network draw.
+    fn outlines(&self) -> Option<&Outlines> {
+        match &self.drawn {
+            Drawn::Outlines(outlines) => Some(outlines),
+            #[cfg(any(feature = "fields", feature = "networks"))]
+            _ => None,
         }
     }
 
     /// Whether it can be drawn without hints. A network cannot.
     pub(super) fn has_outline(&self) -> bool {
         match &self.drawn {
-            Drawn::Outlines(_) | Drawn::Fields(_) => true,
+            Drawn::Outlines(_) => true,
+            #[cfg(feature = "fields")]
+            Drawn::Fields(_) => true,
             #[cfg(feature = "networks")]
             Drawn::Network(_) => false,
         }
@@ -133,12 +153,8 @@ impl Glyph {
     /// How much wider the hinted advance width is than the scaled one, rounded, at a trained size: in whole pixels. None for a
     /// glyph that has no such widths.
     pub(super) fn hinted_advance(&self, size: &HintedSize) -> Option<i8> {
-        match &self.drawn {
-            Drawn::Outlines(outlines) if size.strength > 0.0 => {
-                Some(outlines.advances.get(size.index).copied().unwrap_or(0))
-            }
-            _ => None,
-        }
+        let outlines = self.outlines().filter(|_| size.strength > 0.0)?;
+        Some(outlines.advances.get(size.index).copied().unwrap_or(0))
     }
 
     /// The leftmost point of its outlines in 1/64 pixel. None for a glyph that has none.
@@ -147,12 +163,9 @@ impl Glyph {
     ///
     /// `BitmapTooLarge` for points that are too far away.
     pub(super) fn left(&self, ppem: f32, scratch: &mut Scratch) -> Result<Option<i32>, Error> {
-        match &self.drawn {
-            Drawn::Outlines(outlines) => match outlines.at(DrawOptions::new(ppem)) {
-                Some((size, parts)) => leftmost(parts, &size, scratch),
-                None => Ok(None),
-            },
-            _ => Ok(None),
+        match self.outlines().and_then(|outlines| outlines.at(DrawOptions::new(ppem))) {
+            Some((size, parts)) => leftmost(parts, &size, scratch),
+            None => Ok(None),
         }
     }
 
@@ -160,8 +173,8 @@ impl Glyph {
     #[cfg(feature = "networks")]
     pub fn network(&self) -> Option<&Network> {
         match &self.drawn {
-            Drawn::Outlines(_) | Drawn::Fields(_) => None,
             Drawn::Network(network) => Some(network),
+            _ => None,
         }
     }
 
@@ -181,6 +194,7 @@ impl Glyph {
                 })?;
                 found
             }
+            #[cfg(feature = "fields")]
             Drawn::Fields(parts) => {
                 let mut whole = Placement::default();
                 for (model, origin) in parts {
@@ -247,12 +261,14 @@ impl Glyph {
         let mut budget = Budget::new(self.glyph, &self.limits);
         match &self.drawn {
             Drawn::Outlines(outlines) => outlines.draw(kept, options, scratch, &mut budget, room),
+            #[cfg(feature = "fields")]
             Drawn::Fields(parts) => self.draw_parts(parts, options, scratch, &mut budget, room),
             #[cfg(feature = "networks")]
             Drawn::Network(network) => network.draw(self.glyph, options, &mut budget, room),
         }
     }
 
+    #[cfg(feature = "fields")]
     fn draw_parts<'b>(
         &self,
         parts: &[(Arc<GridFit>, Origin)],
@@ -287,6 +303,7 @@ impl Glyph {
                 let parts = parts.iter().map(|(model, part)| model.memory() + part.memory());
                 parts.sum::<usize>() + advances.len()
             }
+            #[cfg(feature = "fields")]
             Drawn::Fields(parts) => {
                 parts.iter().map(|(model, origin)| model.memory() + origin.memory()).sum()
             }
@@ -346,6 +363,7 @@ pub(super) fn fresh<'b>(
 }
 
 /// The position of a part's origin in pixels.
+#[cfg(feature = "fields")]
 fn position(origin: &Origin, size: &HintedSize, options: DrawOptions) -> [f32; 2] {
     let (at, moved) = (origin.at(size), options.moved());
     [0, 1].map(|axis| at[axis] + moved[axis])

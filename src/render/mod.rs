@@ -3,6 +3,7 @@
 mod area;
 mod charmap;
 mod decoder;
+#[cfg(feature = "fields")]
 mod draw;
 mod flatten;
 mod font;

@@ -12,6 +12,7 @@ pub(super) const STRIP: usize = 1 << 20;
 pub(super) struct Strip {
     /// The pixel in the upper left corner.
     pub(super) left: i32,
+    #[cfg(feature = "fields")]
     pub(super) top: i32,
     /// Whether these are all columns.
     pub(super) is_whole: bool,
@@ -32,7 +33,12 @@ pub(super) fn in_strips<const MOST: usize>(
     for column in (0..width).step_by(columns) {
         scratch.area.start(columns.min(width - column), height);
         let left = placement.left.saturating_add(column as i32);
-        let strip = Strip { left, top: placement.top, is_whole: columns == width };
+        let strip = Strip {
+            left,
+            #[cfg(feature = "fields")]
+            top: placement.top,
+            is_whole: columns == width,
+        };
         let added = add(&strip, scratch);
         // Also after an error, so that nothing is left for the next bitmap.
         scratch.area.finish(canvas.pitch, &mut canvas.pixels[column..]);

@@ -113,7 +113,8 @@ fn of(error: &Error) -> nfr_status {
         Error::InvalidOffset(_) => NFR_INVALID_OFFSET,
         Error::BufferTooSmall { .. } => NFR_BUFFER_TOO_SMALL,
         Error::BitmapTooLarge { .. } | Error::DecodedTooLarge { .. } | Error::TooMuchWork { .. } => NFR_LIMIT,
-        Error::NetworksNotBuilt(_)
+        Error::FieldsNotBuilt(_)
+        | Error::NetworksNotBuilt(_)
         | Error::NetworkSize { .. }
         | Error::NetworkOffset { .. }
         | Error::NetworkSubpixels(_) => NFR_UNSUPPORTED,

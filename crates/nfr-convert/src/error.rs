@@ -107,7 +107,8 @@ impl From<nfr::Error> for Error {
                 Ok(glyph) => Self::MissingGlyph(glyph),
                 Err(_) => Self::InvalidParameter(error.to_string()),
             },
-            Cause::NetworksNotBuilt(_)
+            Cause::FieldsNotBuilt(_)
+            | Cause::NetworksNotBuilt(_)
             | Cause::NetworkSize { .. }
             | Cause::NetworkOffset { .. }
             | Cause::NetworkSubpixels(_) => Self::Unsupported(error.to_string()),

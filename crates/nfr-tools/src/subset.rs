@@ -14,11 +14,12 @@ use super::progress::print_line;
 use nfr_convert::closure::LayoutFeatures;
 use nfr_convert::combine::compact;
 
-/// The module for fontTools.
-const MODULE: [(&str, &str); 6] = [
+/// The module for fontTools: the package `nfr` without what is compiled.
+const MODULE: [(&str, &str); 7] = [
     ("__init__.py", include_str!("../../../python/nfr/__init__.py")),
     ("coder.py", include_str!("../../../python/nfr/coder.py")),
     ("composed.py", include_str!("../../../python/nfr/composed.py")),
+    ("errors.py", include_str!("../../../python/nfr/errors.py")),
     ("subset.py", include_str!("../../../python/nfr/subset.py")),
     ("table.py", include_str!("../../../python/nfr/table.py")),
     ("outline-priors.txt", include_str!("../../../spec/outline-priors.txt")),
@@ -105,8 +106,8 @@ fn pyftsubset(args: &Args, gids: &[u16]) -> Result<Vec<u8>, Failure> {
 /// What Python's last line says, and what to do about it.
 fn told(python: &Path, errors: &str) -> String {
     let last = errors.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("it says nothing");
-    let advice = if last.contains("No module named 'fontTools'") {
-        "; install it (pip install fonttools), or name a Python that has it with --python"
+    let advice = if last.contains("fontTools is not installed") {
+        ", or name a Python that has it with --python"
     } else {
         ""
     };

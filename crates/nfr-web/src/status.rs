@@ -26,7 +26,8 @@ pub(crate) fn of(error: &Error) -> u32 {
         Error::InvalidOffset(_) => 13,
         Error::BufferTooSmall { .. } => 14,
         Error::BitmapTooLarge { .. } | Error::DecodedTooLarge { .. } | Error::TooMuchWork { .. } => 15,
-        Error::NetworksNotBuilt(_)
+        Error::FieldsNotBuilt(_)
+        | Error::NetworksNotBuilt(_)
         | Error::NetworkSize { .. }
         | Error::NetworkOffset { .. }
         | Error::NetworkSubpixels(_) => 16,

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{Drawn, Glyph};
+use super::Glyph;
 use crate::model::outline::hint;
 
 /// A glyph's outline at a size: the points that are filled, those of all parts one after the other.
@@ -19,7 +19,7 @@ pub struct HintedOutline {
 impl Glyph {
     /// The hinted outline at a size in pixels per em. None for a glyph that a field or a network draws, which has no points.
     pub fn hinted_outline(&self, ppem: f32) -> Option<HintedOutline> {
-        let Drawn::Outlines(outlines) = &self.drawn else { return None };
+        let outlines = self.outlines()?;
         let mut whole = HintedOutline::default();
         let mut points = [Vec::new(), Vec::new()];
         for (model, part) in &outlines.parts {
