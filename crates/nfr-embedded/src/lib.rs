@@ -13,6 +13,8 @@
 //! let face = Face::new(&font);
 //! let style = face.style(12.0, Gray8::WHITE, Gray8::BLACK);
 //! let mut display = MockDisplay::new();
+//! // The columns of neighbouring glyphs may overlap.
+//! display.set_allow_overdraw(true);
 //! Text::new("nfr", Point::new(0, 20), style).draw(&mut display).unwrap();
 //! assert_eq!(face.problem(), None);
 //! # Ok::<(), nfr::Error>(())

@@ -48,6 +48,12 @@ pub fn init(size: usize) {
     unsafe { HEAP.0.init(START, size.min(ALL)) }
 }
 
+/// Forgets the peak and the extent, for the next measurement.
+pub fn reset() {
+    PEAK.store(used(), Relaxed);
+    END.store(START, Relaxed);
+}
+
 /// The bytes in use.
 pub fn used() -> usize {
     USED.load(Relaxed)
