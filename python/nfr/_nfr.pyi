@@ -54,6 +54,25 @@ class Font:
         model, LimitError, and ArgumentError, which is a ValueError, for a size or an offset out of range.
         """
 
+    def draw_lcd(
+        self,
+        glyph: Glyph,
+        ppem: float,
+        *,
+        offset: Sequence[float] = (0.0, 0.0),
+        hinting: bool = True,
+        order: Literal["rgb", "bgr", "v-rgb", "v-bgr"] = "rgb",
+        filter: Literal["shifted", "light", "fir5", "none"] = "shifted",
+    ) -> Bitmap:
+        """Draws the red, green and blue subpixels of a glyph, for LCD panels. The bitmap's pixels have the shape (height, width, 3).
+
+        glyph, ppem, offset, hinting: as in draw.
+        order: how the subpixels lie, "rgb" or "bgr" from left to right, "v-rgb" or "v-bgr" from top to bottom.
+        filter: "shifted" (as FreeType does by default), "light" or "fir5" (FreeType's filters), or "none".
+
+        Raises as draw, and ValueError for another order or filter.
+        """
+
     def draw_text(
         self, text: str, ppem: float, *, hinting: bool = True, hinted_advances: bool | None = None
     ) -> Bitmap:
@@ -135,7 +154,9 @@ class Bitmap:
 
     @property
     def pixels(self) -> NDArray[uint8]:
-        """Coverage 0-255: a numpy array of uint8 with the shape (height, width), top row first. It belongs to the caller."""
+        """Coverage 0-255: a numpy array of uint8 with the shape (height, width), top row first, or (height, width, 3) for red, green
+        and blue. It belongs to the caller.
+        """
 
     @property
     def left(self) -> int:

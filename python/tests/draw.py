@@ -128,6 +128,29 @@ def hinting_can_be_left_out():
 
 
 @test
+def subpixels_have_three_channels():
+    font = nfr.Font(FONT)
+    third = 21 / 64
+    for filter in ["shifted", "light", "fir5", "none"]:
+        drawn = font.draw_lcd("g", 20, filter=filter)
+        assert drawn.pixels.shape == (drawn.height, drawn.width, 3) and drawn.pixels.any()
+        assert (drawn.pixels[:, :, 0] != drawn.pixels[:, :, 2]).any(), "red is blue"
+        reversed = font.draw_lcd("g", 20, order="bgr", filter=filter)
+        assert (drawn.pixels == reversed.pixels[:, :, ::-1]).all()
+        above = font.draw_lcd("g", 20, order="v-rgb", filter=filter)
+        assert (above.pixels == font.draw_lcd("g", 20, order="v-bgr", filter=filter).pixels[:, :, ::-1]).all()
+        assert drawn.pixels.shape != above.pixels.shape or (drawn.pixels != above.pixels).any()
+    drawn = font.draw_lcd("g", 20)
+    for channel, offset in [(0, third), (1, 0), (2, -third)]:
+        moved = font.draw("g", 20, offset=(offset, 0))
+        left, top = moved.left - drawn.left, drawn.top - moved.top
+        found = drawn.pixels[top : top + moved.height, left : left + moved.width, channel]
+        assert (found == moved.pixels).all() and found.sum() == drawn.pixels[:, :, channel].sum()
+    raises(ValueError, lambda: font.draw_lcd("g", 20, order="grb"), text="grb")
+    raises(ValueError, lambda: font.draw_lcd("g", 20, filter="heavy"), text="heavy")
+
+
+@test
 def metrics_are_in_pixels():
     font = nfr.Font(FONT)
     liberation = nfr.Font(NEURAL)

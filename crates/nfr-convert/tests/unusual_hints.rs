@@ -114,6 +114,21 @@ fn a_glyph_that_its_program_puts_together_is_learned_and_told() {
 }
 
 #[test]
+fn a_program_that_fails_is_told_once() {
+    // Without `fpgm` no function is defined that the programs call.
+    let data = with_tables(&font(FONTS[0]), &[(b"fpgm", Vec::new()), (b"prep", vec![0xB0, 1, 0x21])]);
+    for shape in [Shape::Outline, Shape::Field] {
+        let warnings = Warnings::default();
+        convert(&data, &options(&data, "Hé", shape, 50.0), &warnings).unwrap();
+        let warnings = warnings.0.into_inner().unwrap();
+        for glyph in gids(&data, "Hé") {
+            let told = warnings.iter().filter(|warning| warning.contains(&format!("glyph {glyph}")));
+            assert_eq!(told.count(), 1, "{shape:?}, glyph {glyph}: {warnings:?}");
+        }
+    }
+}
+
+#[test]
 fn a_font_whose_glyphs_are_known_to_be_put_together_by_programs_is_refused() {
     // OpenType 1.9, "name": the family, in English for Windows.
     let family: Vec<u8> = "MingLiU".encode_utf16().flat_map(u16::to_be_bytes).collect();

@@ -16,7 +16,7 @@ use crate::info;
 use crate::input::bytes;
 use crate::line::{self, Style};
 use crate::pool::{Pool, Settings};
-use crate::values::{Limits, LineMetrics, unsigned};
+use crate::values::{Limits, LineMetrics, lcd, unsigned};
 
 /// A font with models, and what draws it.
 ///
@@ -138,6 +138,37 @@ impl Font {
         self.pool.with(&self.font, |rasterizer| {
             let drawn = py.detach(move || rasterizer.draw(glyph, options))?;
             Ok(Bitmap::new(py, drawn.placement, drawn.pixels)?)
+        })
+    }
+
+    /// Draws the red, green and blue subpixels of a glyph, for LCD panels. The bitmap's pixels have the shape (height, width, 3).
+    ///
+    /// glyph, ppem, offset, hinting: as in draw.
+    /// order: how the subpixels lie, "rgb" or "bgr" from left to right, "v-rgb" or "v-bgr" from top to bottom.
+    /// filter: "shifted" (as FreeType does by default), "light" or "fir5" (FreeType's filters), or "none".
+    ///
+    /// Raises as draw, and ValueError for another order or filter.
+    #[pyo3(
+        signature = (glyph, ppem, *, offset=[0.0; 2], hinting=true, order="rgb", filter="shifted"),
+        text_signature = "($self, glyph, ppem, *, offset=(0.0, 0.0), hinting=True, order='rgb', filter='shifted')"
+    )]
+    #[allow(clippy::too_many_arguments, reason = "they are named in Python")]
+    fn draw_lcd(
+        &self,
+        py: Python<'_>,
+        glyph: &Bound<'_, PyAny>,
+        ppem: f32,
+        offset: [f32; 2],
+        hinting: bool,
+        order: &str,
+        filter: &str,
+    ) -> Result<Bitmap, Failure> {
+        let glyph = self::glyph(&self.font, glyph)?;
+        let options = DrawOptions::new(ppem).with_offset(offset).with_hinting(hinting);
+        let lcd = lcd(order, filter)?;
+        self.pool.with(&self.font, |rasterizer| {
+            let drawn = py.detach(move || rasterizer.draw_lcd(glyph, options, lcd))?;
+            Ok(Bitmap::of_subpixels(py, drawn.placement, drawn.pixels)?)
         })
     }
 

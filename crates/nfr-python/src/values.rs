@@ -1,5 +1,6 @@
 //! Small values: limits, and metrics of a line.
 
+use nfr::{Lcd, LcdFilter, SubpixelOrder};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -10,6 +11,35 @@ use pyo3::prelude::*;
 /// `ValueError` for a negative number, and for one that is too large to count with.
 pub(crate) fn unsigned<T: TryFrom<i64>>(name: &str, value: i64) -> PyResult<T> {
     T::try_from(value).map_err(|_| PyValueError::new_err(format!("{name} is out of range: {value}")))
+}
+
+/// How subpixels are drawn, by the names of their order and of the filter.
+///
+/// # Errors
+///
+/// `ValueError` for another name.
+pub(crate) fn lcd(order: &str, filter: &str) -> PyResult<Lcd> {
+    let order = match order {
+        "rgb" => SubpixelOrder::Rgb,
+        "bgr" => SubpixelOrder::Bgr,
+        "v-rgb" => SubpixelOrder::VerticalRgb,
+        "v-bgr" => SubpixelOrder::VerticalBgr,
+        _ => {
+            let message = format!("order is 'rgb', 'bgr', 'v-rgb' or 'v-bgr', not {order:?}");
+            return Err(PyValueError::new_err(message));
+        }
+    };
+    let filter = match filter {
+        "shifted" => LcdFilter::Shifted,
+        "light" => LcdFilter::Light,
+        "fir5" => LcdFilter::Fir5,
+        "none" => LcdFilter::Unfiltered,
+        _ => {
+            let message = format!("filter is 'shifted', 'light', 'fir5' or 'none', not {filter:?}");
+            return Err(PyValueError::new_err(message));
+        }
+    };
+    Ok(Lcd::new(order).with_filter(filter))
 }
 
 /// What drawing a glyph may take. A font file cannot ask for more.

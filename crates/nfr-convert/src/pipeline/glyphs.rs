@@ -1,7 +1,7 @@
 //! Training and measuring all glyphs, chunk by chunk, so that only a few glyphs' training samples are in memory at a time.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::training;
 use crate::compare::metrics::Sums;
@@ -40,6 +40,8 @@ pub(super) struct Stages<'c> {
     pub(super) predictor: &'c Predictor,
     pub(super) options: &'c Options,
     pub(super) progress: &'c dyn Progress,
+    /// The glyphs whose hint programs are told to fail: samples are drawn to learn a glyph, and again to measure it.
+    pub(super) failures: &'c Mutex<BTreeSet<u16>>,
 }
 
 impl Stages<'_> {
@@ -48,7 +50,10 @@ impl Stages<'_> {
         let mut samples = GlyphSamples::draw(self.teacher, self.sizes, gid)?;
         self.predictor.add_predicted_sizes(&mut samples)?;
         if let Some(error) = &samples.hint_error {
-            self.progress.warn(error);
+            let mut told = self.failures.lock().unwrap_or_else(PoisonError::into_inner);
+            if told.insert(gid) {
+                self.progress.warn(error);
+            }
         }
         Ok(samples)
     }

@@ -11,6 +11,7 @@ mod training;
 mod warnings;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Mutex;
 
 use read_fonts::FontRef;
 
@@ -95,6 +96,7 @@ pub fn resume(
     progress.planned(glyphs.modelled.len() + glyphs.composed.len());
     let predictor = Predictor::new(&teacher, &sizes, scale, &glyphs.modelled)?;
     glyphs.predict_part_offsets(&predictor, scale);
+    let failures = Mutex::default();
     let conversion = Stages {
         teacher: &teacher,
         sizes: &sizes,
@@ -103,6 +105,7 @@ pub fn resume(
         predictor: &predictor,
         options,
         progress,
+        failures: &failures,
     };
     let (mut table, measured, mut left_out) = if options.uses_outlines() {
         let Learned { table, measured, left_out } =
