@@ -5,8 +5,6 @@ use core::fmt;
 
 use nfr::{BitmapRef, DrawOptions, Error, Font, MissingModel, Rasterizer};
 
-use crate::style::Style;
-
 /// What is drawn for a character that the font lacks, and for a glyph without a model. A damaged model is skipped in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Missing {
@@ -51,7 +49,7 @@ impl fmt::Display for Problem {
 
 impl core::error::Error for Problem {}
 
-/// A font with its cache of decoded models. [`Style`]s refer to it, one after the other or several at once, on one thread.
+/// A font with its cache of decoded models. [`Style`](crate::Style)s refer to it, one after the other or several at once, on one thread.
 #[derive(Debug)]
 pub struct Face {
     rasterizer: RefCell<Rasterizer>,
@@ -83,11 +81,6 @@ impl Face {
         };
         let rasterizer = self.rasterizer.into_inner().with_missing_model(model);
         Self { rasterizer: RefCell::new(rasterizer), missing, ..self }
-    }
-
-    /// A style: text of a size in pixels per em and of a colour, on a background of the colour `ground`, which is not drawn.
-    pub fn style<C>(&self, ppem: f32, text: C, ground: C) -> Style<'_, C> {
-        Style::new(self, ppem, text, ground)
     }
 
     /// What went wrong first since the last [`Face::forget_problem`], for drawing text has no errors of its own. What is wrong is

@@ -56,7 +56,8 @@ impl<C: Blend> Style<'_, C> {
         Ok(())
     }
 
-    /// Draws one glyph whose origin is at `origin`, the top left of the first pixel below the baseline. Returns what has to be kept for the next one.
+    /// Draws one glyph whose origin is at `origin`, the top left of the first pixel below the baseline. Returns what has to be kept
+    /// for the next one.
     fn draw_glyph<D: DrawTarget<Color = C>>(
         &self,
         (character, glyph): (char, u32),

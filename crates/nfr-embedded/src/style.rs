@@ -18,6 +18,13 @@ pub struct Style<'a, C> {
     pub(crate) strikethrough: DecorationColor<C>,
 }
 
+impl Face {
+    /// A style: text of a size in pixels per em and of a colour, on a background of the colour `ground`, which is not drawn.
+    pub fn style<C>(&self, ppem: f32, text: C, ground: C) -> Style<'_, C> {
+        Style::new(self, ppem, text, ground)
+    }
+}
+
 impl<'a, C> Style<'a, C> {
     /// Text of a size in pixels per em and of a colour. Partly covered pixels are mixed with the colour `ground`, which should be
     /// that of the display there; pixels that are not covered stay as they are.

@@ -174,7 +174,8 @@ fn bad_input() -> bool {
     good && drawn[0] < drawn[1]
 }
 
-/// The font with another byte: the first of the tag `Nfrt` in the font's directory (`place` 0), or the second of that table, which is its version.
+/// The font with another byte: the first of the tag `Nfrt` in the font's directory (`place` 0), or the second of that
+/// table, which is its version.
 fn changed(place: usize, byte: u8) -> Option<Vec<u8>> {
     let mut bytes = FONT.to_vec();
     let entry = FONT.windows(4).position(|tag| tag == b"Nfrt")?;
