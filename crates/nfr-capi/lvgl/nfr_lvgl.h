@@ -1,5 +1,5 @@
 /*
- * Fonts for LVGL 9.4 or later, of all sizes from one font that nfr-convert has written.
+ * Fonts for LVGL 9.5, of all sizes from one font that nfr-convert has written.
  *
  *     nfr_lvgl_face * face = nfr_lvgl_open(sans_ttf, sizeof sans_ttf, 8 * 1024, NULL);
  *     lv_font_t * small = nfr_lvgl_font_create(face, 12, NULL);

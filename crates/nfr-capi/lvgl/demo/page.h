@@ -5,7 +5,7 @@
 #include "lvgl.h"
 
 #define PAGE_WIDTH 320
-#define PAGE_HEIGHT 412
+#define PAGE_HEIGHT 384
 
 enum { SMALL, MEDIUM, NORMAL, LARGE, SIZES };
 

@@ -155,6 +155,27 @@ static void check_page(bytes file)
     printf("glue: the page is the same, pixel for pixel\n");
 }
 
+static void check_buffers(bytes file)
+{
+    nfr_lvgl_face * face = face_of(file, 8192);
+    lv_font_t * small = font_of(face, 12), * large = font_of(face, 12 + 64); /* whose glyphs are in the same lists */
+    lv_draw_buf_t * buffer = lv_draw_buf_create(12, 9, LV_COLOR_FORMAT_A8, LV_STRIDE_AUTO);
+    lv_font_glyph_dsc_t a, b;
+
+    CHECK(lv_font_get_glyph_dsc(small, &a, 'W', 0) && lv_font_get_glyph_dsc(large, &b, 'W', 0));
+    CHECK(a.box_w == 12 && a.box_h == 9 && b.box_h > 5 * a.box_h);
+    CHECK(lv_font_get_glyph_bitmap(&a, buffer) == buffer);
+    CHECK(lv_font_get_glyph_bitmap(&a, NULL) == NULL && lv_font_get_glyph_bitmap(&b, buffer) == NULL);
+    lv_draw_buf_destroy(buffer);
+    buffer = lv_draw_buf_create(12, 8, LV_COLOR_FORMAT_A8, LV_STRIDE_AUTO);
+    buffer->data_size = 12 * 8;
+    CHECK(lv_font_get_glyph_bitmap(&a, buffer) == NULL);
+    lv_draw_buf_destroy(buffer);
+    nfr_lvgl_font_destroy(small);
+    nfr_lvgl_font_destroy(large);
+    nfr_lvgl_close(face);
+}
+
 /* A letter that is left to the fallback, and a good one that is not. */
 static void check_fallback(const char * folder, const char * name, uint32_t letter, uint32_t good, nfr_status status)
 {
@@ -283,6 +304,7 @@ int main(int argc, char ** argv)
     file = read_file(argv[1], "latin.ttf");
     check_pixels(file);
     check_page(file);
+    check_buffers(file);
     check_threads(file);
     check_bad(argv[1], file);
     check_fallback(argv[1], "partial.ttf", 'b', 'g', NFR_OK);
