@@ -26,8 +26,8 @@ const DEFAULT_CACHE: usize = 8 << 20;
 /// All ways of drawing give the same pixels. Their errors are the same, too: `NoSuchGlyph` for a glyph that the font does
 /// not have, `MissingModel` for one without a model (see [`Self::with_missing_model`]), `MalformedModel` or
 /// `ModelTooLarge` for a damaged one, `InvalidSize` or `InvalidOffset` for [`DrawOptions`] out of range, `BitmapTooLarge`,
-/// `DecodedTooLarge` or `TooMuchWork` for what is beyond the [`Limits`], and for glyphs that a network draws
-/// `NetworksNotBuilt`, `NetworkSize` and `NetworkOffset`.
+/// `DecodedTooLarge` or `TooMuchWork` for what is beyond the [`Limits`], for glyphs that a field draws
+/// `FieldsNotBuilt`, and for those that a network draws `NetworksNotBuilt`, `NetworkSize` and `NetworkOffset`.
 #[derive(Debug)]
 pub struct Rasterizer {
     decoder: Decoder,

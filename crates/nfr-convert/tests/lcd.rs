@@ -1,6 +1,8 @@
 //! Coverage of subpixels against FreeType's, from fonts that are converted for the target `lcd`.
 #![allow(clippy::unwrap_used)]
 
+#[path = "samples/freetype_bitmap.rs"]
+mod freetype_bitmap;
 mod samples;
 
 use std::rc::Rc;
@@ -8,6 +10,7 @@ use std::sync::LazyLock;
 
 use freetype::face::LoadFlag;
 use freetype::{Face, Matrix, RenderMode, Vector};
+use freetype_bitmap::rendered;
 use nfr::{Bitmap, Font, Lcd, LcdBitmap, LcdFilter, Placement, Rasterizer, SubpixelOrder, Target};
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::{Options, convert};
@@ -18,22 +21,6 @@ use samples::{FONTS, Silent, ascii, font, gid, gids};
 /// 0.0002 from the hints at these sizes; the rest is what the rasterisers differ by.
 const TOLERANCE: f64 = 0.0004;
 const PPEM: [u32; 7] = [9, 10, 11, 12, 14, 16, 24];
-
-/// What FreeType draws of the glyph that is loaded: a byte is a sample, three of which may be a pixel.
-fn freetype(face: &Face, mode: RenderMode) -> Bitmap {
-    let slot = face.glyph();
-    slot.render_glyph(mode).unwrap();
-    let bitmap = slot.bitmap();
-    let (width, height) = (bitmap.width() as usize, bitmap.rows() as usize);
-    let rows = bitmap.buffer().chunks(bitmap.pitch().max(1) as usize).take(height);
-    let placement = Placement {
-        left: slot.bitmap_left(),
-        top: slot.bitmap_top(),
-        width: width as u32,
-        height: height as u32,
-    };
-    Bitmap { placement, pixels: rows.flat_map(|row| &row[..width]).copied().collect() }
-}
 
 fn load(face: &Face, gid: u16, ppem: u32) {
     face.set_pixel_sizes(0, ppem).unwrap();
@@ -81,7 +68,7 @@ fn compare(lcd: Lcd, reference: impl Fn(&Face, u16, u32) -> [Bitmap; 3]) {
 fn shifted_coverage_is_that_of_freetypes_default_build() {
     compare(Lcd::default(), |face, gid, ppem| {
         load(face, gid, ppem);
-        let drawn = freetype(face, RenderMode::Lcd);
+        let drawn = rendered(face, RenderMode::Lcd).unwrap();
         [0, 1, 2].map(|k| Bitmap {
             placement: Placement { width: drawn.placement.width / 3, ..drawn.placement },
             pixels: drawn.pixels.iter().skip(k).step_by(3).copied().collect(),
@@ -93,7 +80,7 @@ fn shifted_coverage_is_that_of_freetypes_default_build() {
 fn shifted_coverage_of_subpixels_one_above_the_other_is_freetypes_too() {
     compare(Lcd::new(SubpixelOrder::VerticalRgb), |face, gid, ppem| {
         load(face, gid, ppem);
-        let drawn = freetype(face, RenderMode::LcdV);
+        let drawn = rendered(face, RenderMode::LcdV).unwrap();
         let width = drawn.placement.width.max(1) as usize;
         [0, 1, 2].map(|k| Bitmap {
             placement: Placement { height: drawn.placement.height / 3, ..drawn.placement },
@@ -108,7 +95,7 @@ fn filtered(face: &Face, gid: u16, ppem: u32, weights: [u32; 5]) -> [Bitmap; 3] 
     let mut wide = Matrix { xx: 3 * one, xy: 0, yx: 0, yy: one };
     face.set_transform(&mut wide, &mut Vector { x: 0, y: 0 });
     load(face, gid, ppem);
-    let samples = freetype(face, RenderMode::Normal);
+    let samples = rendered(face, RenderMode::Normal).unwrap();
     let place = samples.placement;
     let (left, right) = (place.left - 2, place.left + place.width as i32 + 2);
     let (first, end) = (left.div_euclid(3), (right + 2).div_euclid(3));
