@@ -17,6 +17,8 @@ const server = createServer((request, response) => {
   try {
     const path = new URL(request.url, "http://localhost").pathname;
     response.setHeader("content-type", TYPES[path.split(".").pop()]);
+    // As hosts of static files have it: a second visit within the time asks for the page alone.
+    response.setHeader("cache-control", path.endsWith(".html") ? "no-cache" : "max-age=600");
     response.end(readFileSync(folder + path));
   } catch {
     response.writeHead(404).end();
