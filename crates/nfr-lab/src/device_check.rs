@@ -6,6 +6,7 @@ use burn::tensor::Device;
 
 use super::accelerator::{Accelerator, guarded};
 use super::implicit::Implicit;
+use super::lockstep::{Lockstep, LockstepSamples};
 use super::masked::Masked;
 use super::masked_samples::MaskedSamples;
 use super::network_variant::NetworkVariant;
@@ -18,6 +19,8 @@ use nfr_convert::error::Error;
 /// rounding: at the published width, adding in another order on the same processor changes the loss by a tenth in ten steps.
 /// At this rate it falls to a quarter in thirty steps, and such an order changes it by less than a ten-thousandth.
 const RATE: f64 = 1e-5;
+/// Networks in lockstep whose losses are compared.
+const TOGETHER: usize = 2;
 /// Rounds of steps that are timed; the median counts.
 const ROUNDS: usize = 5;
 /// Steps of a round.
@@ -75,6 +78,11 @@ pub fn compare_losses(
         let network = Implicit::new(settings.implicit, schedule.seed, device);
         losses(network, &schedule, set.len(), steps, |numbers| set.batch(numbers))
     };
+    let lockstep = |device: &Device, _: PixelLayout| {
+        let schedule = settings.implicit_schedule(settings.implicit);
+        let (set, network) = in_lockstep(settings, samples, TOGETHER, device)?;
+        losses(network, &schedule, set.len(), steps, |numbers| set.batch(numbers[0]).clone())
+    };
     let masked = |device: &Device, _: PixelLayout| {
         let schedule = settings.masked_schedule();
         let set = MaskedSamples::new(samples, device);
@@ -92,8 +100,21 @@ pub fn compare_losses(
     };
     Ok(vec![
         compare(NetworkVariant::Implicit(Vec::new()).name(), &implicit)?,
+        compare(format!("{TOGETHER} in lockstep, each an implicit"), &lockstep)?,
         compare(NetworkVariant::Masked.name(), &masked)?,
     ])
+}
+
+/// So many implicit networks in lockstep that learn the same bitmaps.
+fn in_lockstep(
+    settings: &Settings,
+    samples: &[TrainingSample],
+    together: usize,
+    device: &Device,
+) -> Result<(LockstepSamples, Lockstep), Error> {
+    let networks = vec![Implicit::new(settings.implicit, settings.seed, device); together];
+    let members = vec![(samples.to_vec(), settings.implicit); together];
+    Ok((LockstepSamples::new(&members, &networks, device)?, Lockstep::new(&networks)))
 }
 
 /// The losses of the first steps of a training, but at [`RATE`].
@@ -112,7 +133,7 @@ fn losses<L: TrainableNetwork>(
     Ok(losses)
 }
 
-/// Times steps of the implicit network on one bitmap.
+/// Times steps of the implicit network on one bitmap, or of several in lockstep, each on one.
 ///
 /// # Errors
 ///
@@ -120,36 +141,43 @@ fn losses<L: TrainableNetwork>(
 pub fn time_steps(
     settings: &Settings,
     sample: &TrainingSample,
-    sizes: usize,
+    together: usize,
     accelerator: &Accelerator,
 ) -> Result<StepTime, Error> {
+    let device = accelerator.device.clone().autodiff();
+    let rate = settings.implicit_schedule(settings.implicit).rates.first().copied().unwrap_or_default();
+    let samples = vec![sample.clone()];
     guarded(|| {
-        let device = accelerator.device.clone().autodiff();
-        let set = ImplicitSamples::new(
-            vec![sample.clone()],
-            sizes,
-            settings.implicit,
-            accelerator.layout(),
-            &device,
-        );
-        let rate = settings.implicit_schedule(settings.implicit).rates.first().copied().unwrap_or_default();
-        let mut training = Training::new(Implicit::new(settings.implicit, settings.seed, &device));
-        let operations = training.network.operations(&set.batch(&[0]));
-        let round = |training| {
-            let start = Instant::now();
-            let batches = (0..ROUND).map(|_| set.batch(&[0]));
-            let (training, _) = Training::steps(training, rate, batches)?;
-            Ok::<_, Error>((training, start.elapsed().as_secs_f64()))
-        };
-        let first;
-        (training, first) = round(training)?;
-        let mut seconds = [0.0; ROUNDS];
-        for seconds in &mut seconds {
-            let elapsed;
-            (training, elapsed) = round(training)?;
-            *seconds = elapsed / ROUND as f64;
+        if together > 1 {
+            let (set, network) = in_lockstep(settings, &samples, together, &device)?;
+            return timed(network, rate, || set.batch(0).clone());
         }
-        seconds.sort_by(f64::total_cmp);
-        Ok(StepTime { first, seconds: seconds[ROUNDS / 2], operations })
+        let layout = accelerator.layout();
+        let set = ImplicitSamples::new(samples.clone(), 1, settings.implicit, layout, &device);
+        timed(Implicit::new(settings.implicit, settings.seed, &device), rate, || set.batch(&[0]))
     })
+}
+
+fn timed<L: TrainableNetwork>(
+    network: L,
+    rate: f64,
+    batch: impl Fn() -> L::Batch,
+) -> Result<StepTime, Error> {
+    let operations = network.operations(&batch());
+    let mut training = Training::new(network);
+    let round = |training| {
+        let start = Instant::now();
+        let (training, _) = Training::steps(training, rate, (0..ROUND).map(|_| batch()))?;
+        Ok::<_, Error>((training, start.elapsed().as_secs_f64()))
+    };
+    let first;
+    (training, first) = round(training)?;
+    let mut seconds = [0.0; ROUNDS];
+    for seconds in &mut seconds {
+        let elapsed;
+        (training, elapsed) = round(training)?;
+        *seconds = elapsed / ROUND as f64;
+    }
+    seconds.sort_by(f64::total_cmp);
+    Ok(StepTime { first, seconds: seconds[ROUNDS / 2], operations })
 }

@@ -24,6 +24,8 @@ pub struct Experiment<'b> {
     pub accelerator: Accelerator,
     /// Trainings that run in parallel.
     pub jobs: usize,
+    /// Implicit networks that a queue trains in [lockstep](super::lockstep), where they can be; 1 for none.
+    pub together: usize,
     /// Where trainings are kept, each in a directory of its own; nowhere without one.
     pub directory: Option<PathBuf>,
     /// Whether trainings that are found there are resumed.
@@ -90,29 +92,65 @@ impl Experiment<'_> {
         epochs: usize,
         train: impl FnOnce(Option<&Checkpoint>) -> Result<TrainingResult, Error>,
     ) -> Result<TrainingResult, Error> {
-        let place =
-            |directory: &PathBuf| path.iter().fold(directory.clone(), |path, part| path.join(slug(part)));
-        let elsewhere: Vec<PathBuf> = self.merged.iter().map(place).collect();
-        let found = files.map_or(Ok(None), |files| files.finished(&elsewhere))?;
-        if let Some(result) = found {
+        if let Some(result) = self.finished(path, files)? {
             return Ok(result);
         }
-        if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+        if self.is_late() {
             let unfinished = match files {
-                Some(files) if self.unfinished => files.unfinished(&elsewhere)?,
+                Some(files) if self.unfinished => files.unfinished(&self.elsewhere(path))?,
                 _ => None,
             };
             return unfinished.ok_or(Error::TimeLimit);
         }
         let checkpoint = files.map(TrainingFiles::checkpoint);
         let result = guarded(|| train(checkpoint.as_ref()))?;
+        let finished = self.keep(files, epochs, &result)?;
+        if finished || self.unfinished { Ok(result) } else { Err(Error::TimeLimit) }
+    }
+
+    /// The result of a training that is finished, here or in a merged directory.
+    ///
+    /// # Errors
+    ///
+    /// As the files'.
+    pub fn finished(
+        &self,
+        path: &[&str],
+        files: Option<&TrainingFiles>,
+    ) -> Result<Option<TrainingResult>, Error> {
+        files.map_or(Ok(None), |files| files.finished(&self.elsewhere(path)))
+    }
+
+    /// Keeps what a training has come to, and says whether it has all of its epochs.
+    ///
+    /// # Errors
+    ///
+    /// As the files'.
+    pub fn keep(
+        &self,
+        files: Option<&TrainingFiles>,
+        epochs: usize,
+        result: &TrainingResult,
+    ) -> Result<bool, Error> {
         let finished = result.history.len() >= epochs;
         match files {
-            Some(files) if finished => files.finish(&result, self.keep_networks)?,
-            Some(files) => files.leave(&result)?,
+            Some(files) if finished => files.finish(result, self.keep_networks)?,
+            Some(files) => files.leave(result)?,
             None => (),
         }
-        if finished || self.unfinished { Ok(result) } else { Err(Error::TimeLimit) }
+        Ok(finished)
+    }
+
+    /// Whether trainings have to stop.
+    pub fn is_late(&self) -> bool {
+        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    /// The merged directories of a training.
+    fn elsewhere(&self, path: &[&str]) -> Vec<PathBuf> {
+        let place =
+            |directory: &PathBuf| path.iter().fold(directory.clone(), |path, part| path.join(slug(part)));
+        self.merged.iter().map(place).collect()
     }
 
     /// Applies `work` to each item on `jobs` threads; the results are in the order of the items. A failure ends the work.

@@ -132,7 +132,7 @@ impl<'t> FamilyTask<'t> {
         };
         let TrainedNetwork { network, history, operations, .. } =
             train_implicit(self.samples.clone(), *sizes, config, schedule, run)?;
-        let origin = TrainingOrigin::new(&context.accelerator, operations);
+        let origin = TrainingOrigin::new(&context.accelerator, operations, 1);
         let set = ImplicitSamples::new(self.samples.clone(), *sizes, config, run.layout, &device);
         Ok(FamilyNetwork { network, set, sizes: *sizes, history, origin })
     }

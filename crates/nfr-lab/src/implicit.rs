@@ -184,6 +184,21 @@ impl Implicit {
         &self.norms
     }
 
+    /// The layers of [`Self::layers`]: the size's encoder, the trunk, the shares of the latent vector, and the output.
+    pub(super) fn layers_mut(&mut self) -> (&mut [Linear], &mut [Linear], &mut [Linear], &mut Linear) {
+        (&mut self.size_encoder, &mut self.trunk, &mut self.from_latent, &mut self.output)
+    }
+
+    /// The batch normalisations.
+    pub(super) fn norms_mut(&mut self) -> &mut [BatchNorm] {
+        &mut self.norms
+    }
+
+    /// Whether layers add their inputs.
+    pub(super) fn is_residual(&self) -> bool {
+        self.residual
+    }
+
     /// The latent vectors `[bitmaps, latent]` of weights `[bitmaps, 1]`.
     pub fn weight_latents(&self, weights: Tensor<2>) -> Tensor<2> {
         encode(&self.weight_encoder, weights)

@@ -19,6 +19,7 @@ pub mod gridfit_interpolation;
 mod groups;
 pub mod implicit;
 pub mod interpolation;
+pub mod lockstep;
 pub mod masked;
 pub mod masked_samples;
 pub mod memorisation;

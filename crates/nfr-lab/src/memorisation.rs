@@ -5,14 +5,16 @@ use super::dataset::{CharGlyph, Dataset};
 use super::evaluation::{ClassAccuracy, Evaluation};
 use super::experiment::Experiment;
 use super::implicit::{Implicit, ImplicitConfig};
+use super::lockstep::{can_join, train_in_lockstep};
 use super::network_training::{TrainedNetwork, TrainingRun, train_implicit, train_masked};
 use super::network_variant::{Ablation, GRID_FIT, NetworkVariant};
 use super::samples::TrainingSample;
-use super::train::TrainingSchedule;
 use super::train::checkpoint::Checkpoint;
 use super::train::files::TrainingFiles;
 use super::train::result::{TrainingOrigin, TrainingResult};
+use super::train::{Training, TrainingSchedule};
 use super::truth::TruthSize;
+use nfr::internals::table::{FNV_BASIS, fnv1a};
 use nfr::{Font, Rasterizer};
 use nfr_convert::error::Error;
 use nfr_convert::{Options, Progress, Shape, convert};
@@ -54,6 +56,76 @@ pub fn train(
 ) -> Result<Evaluation, Error> {
     let result = trained(context, dataset, glyph, model)?;
     evaluated(dataset, glyph, model, result)
+}
+
+/// A network that has to learn a glyph of a font, and whether it is kept beside its result.
+#[derive(Clone)]
+pub struct Member<'d> {
+    /// The font.
+    pub dataset: &'d Dataset,
+    /// The glyph.
+    pub glyph: CharGlyph,
+    /// The network.
+    pub model: NetworkVariant,
+    /// Whether the network is kept.
+    pub keep_network: bool,
+}
+
+/// Whether a network can learn in lockstep with others, and its training is not finished.
+///
+/// # Errors
+///
+/// As the truth's and the files'.
+pub fn is_waiting(context: &Experiment<'_>, member: &Member<'_>) -> Result<bool, Error> {
+    let Member { dataset, glyph, model, .. } = member;
+    let task = Task::new(context, dataset, *glyph, model)?;
+    let joins =
+        matches!(model, NetworkVariant::Implicit(_)) && can_join(&context.settings.implicit, &task.config);
+    Ok(joins && context.finished(&task.path(), task.files.as_ref())?.is_none())
+}
+
+/// Trains the networks of waiting members in lockstep, and keeps what each has come to. Says whether they are finished; if not, the
+/// same members go on from there.
+///
+/// # Errors
+///
+/// As [`trained`]. The time limit is none.
+pub fn train_together(context: &Experiment<'_>, members: &[Member<'_>]) -> Result<bool, Error> {
+    let mut tasks = Vec::new();
+    for member in members {
+        tasks.push(Task::new(context, member.dataset, member.glyph, &member.model)?);
+    }
+    let Some(first) = tasks.first() else { return Ok(true) };
+    if context.is_late() {
+        return Ok(false);
+    }
+    let keys: String =
+        tasks.iter().flat_map(|task| &task.files).map(|f| format!("{:016x}", f.key())).collect();
+    let name = format!("{:016x}", fnv1a(FNV_BASIS, keys.as_bytes()));
+    let files = context.files(&["together", &name], &keys, &[])?;
+    let checkpoint = files.as_ref().map(TrainingFiles::checkpoint);
+    let label = format!("{} networks in lockstep, from {} on", tasks.len(), first.label);
+    let on_epoch = |done| (context.on_progress)(&label, done, first.schedule.rates.len());
+    let (device, layout) = (&context.device(), context.accelerator.layout());
+    let (checkpoint, deadline) = (checkpoint.as_ref(), context.deadline);
+    let run = TrainingRun { device, layout, checkpoint, deadline, on_epoch: &on_epoch };
+    let of_networks: Vec<_> = tasks.iter().map(|task| (task.samples.clone(), task.config)).collect();
+    let trained = guarded(|| train_in_lockstep(&of_networks, &first.schedule, run))?;
+    let mut finished = true;
+    for ((task, member), one) in tasks.iter().zip(members).zip(trained) {
+        let keeping = context.keeping_networks(member.keep_network);
+        let epochs = task.schedule.rates.len();
+        if let (Some(files), true) = (&task.files, member.keep_network && one.history.len() >= epochs) {
+            files.checkpoint().save(&Training::of(one.network, one.history.clone()))?;
+        }
+        let origin = TrainingOrigin::new(&context.accelerator, one.operations, members.len());
+        let result = TrainingResult { origin, history: one.history, drawn: one.drawn };
+        finished &= keeping.keep(task.files.as_ref(), epochs, &result)?;
+    }
+    if let (Some(files), true) = (files, finished) {
+        files.discard()?;
+    }
+    Ok(finished)
 }
 
 /// Trains an implicit network on a glyph, or goes on from its checkpoint, and returns the network too.
@@ -170,7 +242,7 @@ impl<'t> Task<'t> {
 /// A finished training as its result and its network.
 pub(super) fn with_network<N>(context: &Experiment<'_>, trained: TrainedNetwork<N>) -> (TrainingResult, N) {
     let TrainedNetwork { network, history, operations, drawn } = trained;
-    let origin = TrainingOrigin::new(&context.accelerator, operations);
+    let origin = TrainingOrigin::new(&context.accelerator, operations, 1);
     (TrainingResult { origin, history, drawn }, network)
 }
 

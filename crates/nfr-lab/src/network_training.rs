@@ -13,7 +13,7 @@ use super::train::checkpoint::Checkpoint;
 use super::train::{Epoch, TrainableNetwork, Training, TrainingSchedule};
 use nfr_convert::error::Error;
 
-/// Checkpoints are written this often, in seconds of training.
+/// Checkpoints are written this often, in seconds of training for each network in them.
 const SAVE_INTERVAL: f64 = 60.0;
 
 /// A training that is finished, or has fewer epochs than its schedule, since its time was up.
@@ -63,8 +63,9 @@ pub fn train_implicit(
         likeliest(training.network.forward(&set.batch(&[k]).0, statistics), sample.truth.side)
     };
     let drawn = set.samples().enumerate().map(draw).collect::<Result<_, _>>()?;
-    let operations = operations(&training, set.len(), |numbers| set.batch(numbers));
-    Ok(TrainedNetwork { drawn, operations, network: training.network, history: training.history })
+    let operations =
+        operations(&training.network, training.epochs(), set.len(), |numbers| set.batch(numbers));
+    Ok(trained(training, operations, drawn))
 }
 
 /// Trains a masked network on bitmaps of different sizes, whose boxes ascend.
@@ -82,21 +83,30 @@ pub fn train_masked(
     let network = Masked::new(widths, set.len(), set.largest(), schedule.seed, run.device);
     let training = train(network, schedule, set.len(), |numbers| set.batch(numbers), run)?;
     let drawn = set.draw(&training.network)?;
-    let operations = operations(&training, set.len(), |numbers| set.batch(numbers));
-    Ok(TrainedNetwork { drawn, operations, network: training.network, history: training.history })
+    let operations =
+        operations(&training.network, training.epochs(), set.len(), |numbers| set.batch(numbers));
+    Ok(trained(training, operations, drawn))
+}
+
+/// A training of one network.
+fn trained<L>(mut training: Training<L>, operations: u64, drawn: Vec<SquareBitmap>) -> TrainedNetwork<L> {
+    let history = training.histories.pop().unwrap_or_default();
+    TrainedNetwork { drawn, operations, network: training.network, history }
 }
 
 /// The operations of all epochs: those of an epoch do not depend on how it is cut into batches.
-fn operations<L: TrainableNetwork>(
-    training: &Training<L>,
+pub(super) fn operations<L: TrainableNetwork>(
+    network: &L,
+    epochs: usize,
     samples: usize,
     batch: impl Fn(&[usize]) -> L::Batch,
 ) -> u64 {
-    let epoch: f64 = (0..samples).map(|k| training.network.operations(&batch(&[k]))).sum();
-    epoch as u64 * training.history.len() as u64
+    let epoch: f64 = (0..samples).map(|k| network.operations(&batch(&[k]))).sum();
+    epoch as u64 * epochs as u64
 }
 
-fn train<L: TrainableNetwork>(
+/// Trains a network that may be in a checkpoint, and writes one now and then.
+pub(super) fn train<L: TrainableNetwork>(
     network: L,
     schedule: &TrainingSchedule,
     samples: usize,
@@ -109,10 +119,10 @@ fn train<L: TrainableNetwork>(
     };
     let mut unsaved = 0.0;
     training.train(schedule, samples, batch, |training| {
-        (run.on_epoch)(training.history.len());
-        let finished = training.history.len() == schedule.rates.len();
+        (run.on_epoch)(training.epochs());
+        let finished = training.epochs() == schedule.rates.len();
         let late = !finished && run.deadline.is_some_and(|deadline| Instant::now() >= deadline);
-        unsaved += training.history.last().map_or(0.0, |epoch| epoch.seconds);
+        unsaved += training.histories[0].last().map_or(0.0, |epoch| epoch.seconds);
         if let Some(checkpoint) = run.checkpoint
             && (unsaved >= SAVE_INTERVAL || finished || late)
         {

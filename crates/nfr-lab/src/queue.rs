@@ -5,7 +5,7 @@ use super::dataset::{CharGlyph, Dataset};
 use super::experiment::Experiment;
 use super::family::{STYLES, WEIGHTS};
 use super::interpolation;
-use super::memorisation;
+use super::memorisation::{self, Member};
 use super::network_variant::{Ablation, NetworkVariant};
 use super::study::{SHARE, StudyPlan};
 use nfr_convert::error::Error;
@@ -71,15 +71,125 @@ pub struct QueueState {
 /// # Errors
 ///
 /// As the trainings'. What is finished by then is kept.
-pub fn run(plan: &StudyPlan<'_>, context: &Experiment<'_>, share: QueueShare) -> Result<QueueState, Error> {
-    let all = jobs(plan);
-    let mine: Vec<&Job> = all.iter().skip(share.number - 1).step_by(share.of).collect();
-    let done = context.each(&mine, |job| match train(plan, context, job) {
-        Ok(()) => Ok(true),
-        Err(Error::TimeLimit) => Ok(false),
-        Err(error) => Err(error),
+pub fn run(plan: &StudyPlan<'_>, context: &Experiment<'_>, part: QueuePart) -> Result<QueueState, Error> {
+    let all: Vec<Job> = jobs(plan).into_iter().filter(|job| part.networks.contains(job)).collect();
+    let mine: Vec<&Job> = all.iter().skip(part.share.number - 1).step_by(part.share.of).collect();
+    let portions = portions(plan, context, &mine)?;
+    let done = context.each(&portions, |portion| {
+        let done = match portion {
+            Portion::One(job) => train(plan, context, job),
+            Portion::Together(members) => match memorisation::train_together(context, members) {
+                Ok(true) => Ok(()),
+                Ok(false) => Err(Error::TimeLimit),
+                Err(error) => Err(error),
+            },
+        };
+        match done {
+            Ok(()) => Ok(portion.jobs()),
+            Err(Error::TimeLimit) => Ok(0),
+            Err(error) => Err(error),
+        }
     })?;
-    Ok(QueueState { finished: done.into_iter().filter(|done| *done).count(), jobs: mine.len() })
+    Ok(QueueState { finished: done.into_iter().sum(), jobs: mine.len() })
+}
+
+/// What is trained at once.
+enum Portion<'p> {
+    One(&'p Job),
+    /// Networks in lockstep.
+    Together(Vec<Member<'p>>),
+}
+
+impl Portion<'_> {
+    fn jobs(&self) -> usize {
+        match self {
+            Self::One(_) => 1,
+            Self::Together(members) => members.len(),
+        }
+    }
+}
+
+/// The portions of a queue. Jobs that can be done in lockstep are done with the next ones that can, at the place of the first.
+fn portions<'p>(
+    plan: &'p StudyPlan<'p>,
+    context: &Experiment<'_>,
+    queue: &[&'p Job],
+) -> Result<Vec<Portion<'p>>, Error> {
+    let mut portions: Vec<Portion<'p>> = Vec::new();
+    let mut open = None;
+    for job in queue {
+        let member = if context.together > 1 { member(plan, job)? } else { None };
+        let member = match member {
+            Some(member) if memorisation::is_waiting(context, &member)? => member,
+            _ => {
+                portions.push(Portion::One(job));
+                continue;
+            }
+        };
+        match open.and_then(|at: usize| portions.get_mut(at)) {
+            Some(Portion::Together(members)) if members.len() < context.together => members.push(member),
+            _ => {
+                open = Some(portions.len());
+                portions.push(Portion::Together(vec![member]));
+            }
+        }
+    }
+    Ok(portions)
+}
+
+/// A job as a network of one glyph, if it is one.
+fn member<'p>(plan: &'p StudyPlan<'p>, job: &Job) -> Result<Option<Member<'p>>, Error> {
+    let Job::Memorise { font, glyph, model } = job else { return Ok(None) };
+    let dataset = &plan.fonts[*font];
+    // A network that is stored in a font is needed after its training.
+    let keep_network =
+        *font == 0 && plan.stored.contains(*glyph) && *model == NetworkVariant::Implicit(Vec::new());
+    let glyph = glyph_of(dataset, *glyph)?;
+    Ok(Some(Member { dataset, glyph, model: model.clone(), keep_network }))
+}
+
+/// The part of a queue that a run does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct QueuePart {
+    /// The networks that it trains.
+    pub networks: QueueNetworks,
+    /// Its share of their jobs.
+    pub share: QueueShare,
+}
+
+/// The networks that a run trains: a device may be good for one of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum QueueNetworks {
+    /// Both.
+    All,
+    /// The implicit one, with the experiments on families.
+    Implicit,
+    /// The masked one.
+    Masked,
+}
+
+impl QueueNetworks {
+    fn contains(self, job: &Job) -> bool {
+        let masked = matches!(job, Job::Memorise { model: NetworkVariant::Masked, .. });
+        match self {
+            Self::All => true,
+            Self::Implicit => !masked,
+            Self::Masked => masked,
+        }
+    }
+}
+
+impl std::str::FromStr for QueueNetworks {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "all" => Ok(Self::All),
+            "implicit" => Ok(Self::Implicit),
+            "masked" => Ok(Self::Masked),
+            _ => Err(format!("unknown network {name:?}; use all, implicit or masked")),
+        }
+    }
 }
 
 /// The part of a queue that one of several runs does: every job whose number in the queue is `number`, counted from 1, or that and a
@@ -112,13 +222,10 @@ impl std::str::FromStr for QueueShare {
 
 fn train(plan: &StudyPlan<'_>, context: &Experiment<'_>, job: &Job) -> Result<(), Error> {
     match job {
-        Job::Memorise { font, glyph, model } => {
-            let dataset = &plan.fonts[*font];
-            // A network that is stored in a font is needed after its training.
-            let stored =
-                *font == 0 && plan.stored.contains(*glyph) && *model == NetworkVariant::Implicit(Vec::new());
-            let context = context.keeping_networks(stored);
-            memorisation::trained(&context, dataset, glyph_of(dataset, *glyph)?, model).map(drop)
+        Job::Memorise { .. } => {
+            let Some(member) = member(plan, job)? else { return Ok(()) };
+            let context = context.keeping_networks(member.keep_network);
+            memorisation::trained(&context, member.dataset, member.glyph, &member.model).map(drop)
         }
         Job::Weights(glyph) => {
             interpolation::trained(context, WEIGHTS, &plan.weights, SHARE, *glyph).map(drop)

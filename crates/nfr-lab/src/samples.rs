@@ -62,7 +62,7 @@ pub type ImplicitBatch = (Pixels, Tensor<2>);
 impl TrainableNetwork for Implicit {
     type Batch = ImplicitBatch;
 
-    fn loss(&self, (pixels, classes): &Self::Batch) -> Tensor<1> {
+    fn losses(&self, (pixels, classes): &Self::Batch) -> Tensor<1> {
         let scores = self.forward(pixels, self.training_statistics());
         focal_loss(scores, classes.clone(), pixels.shares.as_ref())
     }
@@ -77,7 +77,7 @@ impl TrainableNetwork for Implicit {
 impl TrainableNetwork for Masked {
     type Batch = Enlarged;
 
-    fn loss(&self, batch: &Self::Batch) -> Tensor<1> {
+    fn losses(&self, batch: &Self::Batch) -> Tensor<1> {
         masked_loss(self.forward(batch.sizes.clone()), batch)
     }
 

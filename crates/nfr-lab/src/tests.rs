@@ -57,6 +57,7 @@ fn context<'b>(settings: Settings, directory: Option<&std::path::Path>, resume: 
         settings,
         accelerator: Accelerator::processor(),
         jobs: 2,
+        together: 1,
         directory: directory.map(Into::into),
         resume,
         merged: Vec::new(),
@@ -232,10 +233,10 @@ fn a_training_that_was_interrupted_ends_as_one_that_was_not() {
     );
     assert!(result.is_err());
     let resumed = checkpoint().begin(network()).unwrap();
-    assert_eq!(resumed.history.len(), 4);
+    assert_eq!(resumed.epochs(), 4);
     let resumed = resumed.train(&schedule, set.len(), |numbers| set.batch(numbers), |_| Ok(true)).unwrap();
     let losses = |history: &[super::train::Epoch]| history.iter().map(|epoch| epoch.loss).collect::<Vec<_>>();
-    assert_eq!(losses(&resumed.history), losses(&whole.history));
+    assert_eq!(losses(&resumed.histories[0]), losses(&whole.history));
     let scores = |network: &Implicit| values(network.forward(&set.batch(&[0]).0, Statistics::Batch));
     let (_, straight) = implicit(&context(small(6), None, false), &dataset, glyph, &[]).unwrap();
     assert_eq!(scores(&resumed.network), scores(&straight));

@@ -235,6 +235,29 @@ fn a_queue_stops_goes_on_is_divided_and_merged() {
 }
 
 #[test]
+fn a_queue_of_one_kind_of_networks_trains_several_in_lockstep() {
+    let directory = Directory::new();
+    let out = directory.name("out");
+    let args =
+        ["report", "--fonts", FONTS, "--text", "la", "--part", "la", "--ablated", "l", "--weighted", "a"];
+    let more = ["--epochs", "2", "--boxes", "20,24", "--out", &out, "--quiet", "--resume", "--train-only"];
+    let queue = |which: &[&str]| lab(&args, &[&more[..], which].concat()).succeeds().stdout;
+    let masked = queue(&["--networks", "masked"]);
+    assert!(masked.contains("6 of 6 trainings are finished\n"), "{masked}");
+    // Of the 12 implicit ones, 9 are of one glyph and of batches of one bitmap: two times four, and one.
+    let implicit = queue(&["--networks", "implicit", "--together", "4", "--jobs", "1"]);
+    assert!(implicit.contains("12 of 12 trainings are finished\n"), "{implicit}");
+    let page = lab(&args, &[&more[..8], &["--time-limit", "0"]].concat()).succeeds().stdout;
+    assert!(page.contains(&format!("{JOBS} of {JOBS} trainings are finished\n")), "{page}");
+    let trainings = read(&directory, "out/report/trainings.csv");
+    let together: Vec<&str> = trainings.lines().skip(2).map(|line| line.split(',').nth(6).unwrap()).collect();
+    let count = |networks: &str| together.iter().filter(|of| **of == networks).count();
+    // One each of the masked, the ablation without memorisation adaptations, and what is left over.
+    assert_eq!((count("4"), count("1")), (8, 8), "{trainings}");
+    lab(&args, &["--networks", "both"]).rejects_usage(&["unknown network", "implicit or masked"]);
+}
+
+#[test]
 fn a_report_of_what_is_finished_says_what_is_not() {
     let directory = Directory::new();
     let out = directory.name("out");

@@ -149,21 +149,24 @@ fn losses(context: &ReportContext<'_>) -> Result<ReportSection, Error> {
 
 /// The trainings by network and device: how many there are, what they took, and how fast they went.
 fn trainings(context: &ReportContext<'_>) -> Markup {
-    let mut groups: BTreeMap<(&str, &str, usize), Vec<&Evaluation>> = BTreeMap::new();
+    let mut groups: BTreeMap<(&str, &str, usize, usize), Vec<&Evaluation>> = BTreeMap::new();
     for one in context.results.evaluations.iter().chain(&context.results.ablations) {
         if let Some(origin) = &one.origin {
-            groups.entry((&one.model, &origin.device, one.history.len())).or_default().push(one);
+            groups
+                .entry((&one.model, &origin.device, origin.together, one.history.len()))
+                .or_default()
+                .push(one);
         }
     }
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
     html! {
         table {
-            tr { @for name in ["network", "device", "trainings", "epochs", "seconds of one", "TFLOP/s"] { th { (name) } } }
-            @for ((model, device, epochs), all) in &groups {
+            tr { @for name in ["network", "device", "in lockstep", "trainings", "epochs", "seconds of one", "TFLOP/s"] { th { (name) } } }
+            @for ((model, device, together, epochs), all) in &groups {
                 @let seconds: Vec<f64> = all.iter().filter_map(|one| one.seconds()).collect();
                 @let rates: Vec<f64> = all.iter().filter_map(|one| one.operations_per_second()).collect();
                 tr {
-                    td { (model) } td { (device) } td { (all.len()) } td { (epochs) }
+                    td { (model) } td { (device) } td { (together) } td { (all.len()) } td { (epochs) }
                     @if seconds.is_empty() { td { "–" } td { "–" } }
                     @else { td { (format!("{:.1}", mean(&seconds))) } td { (format!("{:.3}", mean(&rates) / 1e12)) } }
                 }

@@ -69,6 +69,7 @@ fn trainings(context: &ReportContext<'_>) -> Result<String, Error> {
         let seconds = one.seconds().map_or_else(String::new, |seconds| format!("{seconds:.1}"));
         let origin = one.origin.as_ref();
         let device = origin.map_or_else(String::new, |origin| origin.device.clone());
+        let together = origin.map_or_else(String::new, |origin| origin.together.to_string());
         let gigaflops =
             origin.map_or_else(String::new, |origin| (origin.operations / 1_000_000_000).to_string());
         let (model, font) = (one.model.clone(), one.font.clone());
@@ -79,6 +80,7 @@ fn trainings(context: &ReportContext<'_>) -> Result<String, Error> {
             epochs,
             seconds,
             device,
+            together,
             gigaflops,
             format!("{loss:e}"),
             pixels,
@@ -94,6 +96,7 @@ fn trainings(context: &ReportContext<'_>) -> Result<String, Error> {
         "epochs",
         "seconds",
         "device",
+        "together",
         "gflop",
         "loss",
         "pixels",

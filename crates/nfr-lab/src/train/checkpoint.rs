@@ -1,7 +1,7 @@
 //! Trainings on disk: the state that an interrupted one resumes from, and the result of a finished one.
 //!
 //! A checkpoint is one file that is replaced as a whole. It has four [records](nfr_convert::records): a heading with the
-//! key of the training, the network, the optimiser, and the history.
+//! key of the training, the network, the optimiser, and the histories.
 
 use std::fs;
 use std::io;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use burn::store::ModuleRecord;
 use burn::tensor::Bytes;
 
-use super::epochs::{read_history, written_history};
+use super::epochs::{read_histories, written_histories};
 use super::{TrainableNetwork, Training};
 use crate::files;
 use nfr_convert::error::Error;
@@ -50,7 +50,7 @@ impl Checkpoint {
         };
         let path = self.path.display();
         let damaged = || Error::Io(format!("{path} is damaged; delete it and train again"));
-        let [heading, weights, optimizer, history] = records(&bytes).ok_or_else(damaged)?;
+        let [heading, weights, optimizer, histories] = records(&bytes).ok_or_else(damaged)?;
         if heading != self.heading() {
             return Err(Error::Io(format!(
                 "{path} is of a training with other settings; repeat those, or choose another directory with --out"
@@ -64,7 +64,7 @@ impl Checkpoint {
             .optimizer
             .from_bytes(Bytes::from_bytes_vec(optimizer.to_vec()))
             .map_err(|_| damaged())?;
-        training.history = read_history(history).ok_or_else(damaged)?;
+        training.histories = read_histories(histories, training.network.networks()).ok_or_else(damaged)?;
         Ok(training)
     }
 
@@ -78,9 +78,9 @@ impl Checkpoint {
             |e: &dyn std::fmt::Display| Error::Io(format!("cannot write {} ({e})", self.path.display()));
         let weights = training.network.clone().into_record().into_bytes().map_err(|e| failed(&e))?;
         let optimizer = training.optimizer.into_bytes().map_err(|e| failed(&e))?;
-        let history = written_history(&training.history);
+        let histories = written_histories(&training.histories);
         let mut bytes = Vec::new();
-        for payload in [&self.heading()[..], &weights[..], &optimizer[..], &history] {
+        for payload in [&self.heading()[..], &weights[..], &optimizer[..], &histories] {
             append_record(&mut bytes, payload);
         }
         files::write(&self.path, &bytes)

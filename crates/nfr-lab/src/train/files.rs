@@ -39,6 +39,26 @@ impl TrainingFiles {
         Ok(files)
     }
 
+    /// What determines the training.
+    pub fn key(&self) -> u64 {
+        self.key
+    }
+
+    /// Deletes the directory, which holds no result.
+    ///
+    /// # Errors
+    ///
+    /// `Io` if it cannot be deleted.
+    pub fn discard(&self) -> Result<(), Error> {
+        removed(self.checkpoint().path())?;
+        match fs::remove_dir(&self.directory) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => {
+                Err(Error::Io(format!("cannot delete {} ({})", self.directory.display(), e.kind())))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The state that the training goes on from.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint::new(self.directory.join(CHECKPOINT), self.key)

@@ -22,8 +22,13 @@ pub trait TrainableNetwork: Module {
     /// The data of one optimiser step.
     type Batch;
 
-    /// The loss of a batch.
-    fn loss(&self, batch: &Self::Batch) -> Tensor<1>;
+    /// The networks that learn in it, each by itself: one, unless they are in lockstep.
+    fn networks(&self) -> usize {
+        1
+    }
+
+    /// The loss of each of its networks on a batch.
+    fn losses(&self, batch: &Self::Batch) -> Tensor<1>;
 
     /// Floating-point operations of a step on a batch in its matrix products: two for each weight and row forward, as many
     /// for the gradient of the weights, and as many for that of the inputs where these are not data.
@@ -48,7 +53,7 @@ pub struct Epoch {
     pub rate: f64,
     /// The mean loss of its batches.
     pub loss: f64,
-    /// How long it took.
+    /// How long it took: of networks in lockstep, each one's share.
     pub seconds: f64,
 }
 
@@ -63,15 +68,25 @@ pub struct Training<L> {
     /// The network as it is by now.
     pub network: L,
     optimizer: ModuleOptimizer,
-    /// The epochs so far.
-    pub history: Vec<Epoch>,
+    /// The epochs so far, for each of its networks.
+    pub histories: Vec<Vec<Epoch>>,
 }
 
 impl<L: TrainableNetwork> Training<L> {
     /// A training that has not begun.
     pub fn new(network: L) -> Self {
         let optimizer = AdamConfig::new().with_epsilon(EPSILON).init();
-        Self { network, optimizer, history: Vec::new() }
+        Self { histories: vec![Vec::new(); network.networks()], network, optimizer }
+    }
+
+    /// A training of one network that has come so far, with an optimiser that begins anew.
+    pub fn of(network: L, history: Vec<Epoch>) -> Self {
+        Self { histories: vec![history], ..Self::new(network) }
+    }
+
+    /// The number of epochs so far.
+    pub fn epochs(&self) -> usize {
+        self.histories.first().map_or(0, Vec::len)
     }
 
     /// Trains until the schedule ends. `batch` makes a batch from the numbers of some of the `samples` bitmaps, `after`
@@ -87,15 +102,19 @@ impl<L: TrainableNetwork> Training<L> {
         batch: impl Fn(&[usize]) -> L::Batch,
         mut after: impl FnMut(&Self) -> Result<bool, Error>,
     ) -> Result<Self, Error> {
-        for epoch in self.history.len()..schedule.rates.len() {
+        for epoch in self.epochs()..schedule.rates.len() {
             let start = std::time::Instant::now();
             let rate = schedule.rates[epoch];
             let order = order(schedule.seed, epoch, samples);
             let losses;
             (self, losses) = self.steps(rate, order.chunks(schedule.batch).map(&batch))?;
-            let seconds = start.elapsed().as_secs_f64();
-            let loss = losses.iter().sum::<f64>() / losses.len().max(1) as f64;
-            self.history.push(Epoch { rate, loss, seconds });
+            let networks = self.histories.len();
+            let seconds = start.elapsed().as_secs_f64() / networks as f64;
+            let steps = (losses.len() / networks).max(1) as f64;
+            for (number, history) in self.histories.iter_mut().enumerate() {
+                let loss = losses.iter().skip(number).step_by(networks).sum::<f64>() / steps;
+                history.push(Epoch { rate, loss, seconds });
+            }
             if !after(&self)? {
                 break;
             }
@@ -103,7 +122,7 @@ impl<L: TrainableNetwork> Training<L> {
         Ok(self)
     }
 
-    /// Takes a step on each batch, and returns their losses. The device is waited for once, at the end.
+    /// Takes a step on each batch, and returns the losses: batch by batch, of each network. The device is waited for once, at the end.
     ///
     /// # Errors
     ///
@@ -115,15 +134,16 @@ impl<L: TrainableNetwork> Training<L> {
     ) -> Result<(Self, Vec<f64>), Error> {
         let mut losses = Vec::new();
         for batch in batches {
-            let loss = self.network.loss(&batch);
-            losses.push(loss.clone().inner());
-            let gradients = GradientsParams::from_grads(loss.backward(), &self.network);
+            let of_networks = self.network.losses(&batch);
+            losses.push(of_networks.clone().inner());
+            // Networks share no parameters: the gradient of the sum has each one's own.
+            let gradients = GradientsParams::from_grads(of_networks.sum().backward(), &self.network);
             self.network = self.optimizer.step(rate, self.network, gradients);
         }
         if losses.is_empty() {
             return Ok((self, Vec::new()));
         }
-        let count = losses.len();
+        let count = losses.len() * self.network.networks();
         let losses = values::<f32>(&fetch(Tensor::cat(losses, 0))?, count)?;
         Ok((self, losses.into_iter().map(f64::from).collect()))
     }

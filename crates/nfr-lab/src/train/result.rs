@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::Epoch;
-use super::epochs::{read_history, written_history};
+use super::epochs::{read_histories, written_histories};
 use crate::SquareBitmap;
 use crate::accelerator::Accelerator;
 use crate::files;
@@ -45,12 +45,19 @@ pub struct TrainingOrigin {
     pub timed: bool,
     /// Floating-point operations of the matrix products of all its steps.
     pub operations: u64,
+    /// Networks that were trained in lockstep, this one included: times are a share of theirs.
+    #[serde(default = "alone")]
+    pub together: usize,
+}
+
+fn alone() -> usize {
+    1
 }
 
 impl TrainingOrigin {
-    /// A training of so many operations on a device.
-    pub fn new(accelerator: &Accelerator, operations: u64) -> Self {
-        Self { device: accelerator.to_string(), timed: accelerator.is_timed(), operations }
+    /// A training of so many operations on a device, of so many networks in lockstep.
+    pub fn new(accelerator: &Accelerator, operations: u64, together: usize) -> Self {
+        Self { device: accelerator.to_string(), timed: accelerator.is_timed(), operations, together }
     }
 }
 
@@ -113,7 +120,7 @@ impl ResultFile {
             sides: result.drawn.iter().map(|square| square.side).collect(),
         };
         let description = serde_json::to_vec(&description).map_err(|e| failed(&e))?;
-        let history = written_history(&result.history);
+        let history = written_histories(std::slice::from_ref(&result.history));
         let pixels: Vec<u8> = result.drawn.iter().flat_map(|square| square.pixels.iter().copied()).collect();
         let pixels = zstd::bulk::compress(&pixels, LEVEL).map_err(|e| failed(&e))?;
         let mut bytes = Vec::new();
@@ -145,7 +152,7 @@ fn decoded(description: &[u8], history: &[u8], pixels: &[u8]) -> Option<Training
         SquareBitmap { side, pixels: pixels.to_vec() }
     };
     let drawn = sides.into_iter().map(square).collect();
-    Some(TrainingResult { origin, history: read_history(history)?, drawn })
+    Some(TrainingResult { origin, history: read_histories(history, 1)?.pop()?, drawn })
 }
 
 #[cfg(test)]
@@ -156,7 +163,12 @@ mod tests {
     fn result() -> TrainingResult {
         let square = |side: usize| SquareBitmap { side, pixels: (0..side * side).map(|k| k as u8).collect() };
         TrainingResult {
-            origin: TrainingOrigin { device: "a card".into(), timed: true, operations: u64::MAX },
+            origin: TrainingOrigin {
+                device: "a card".into(),
+                timed: true,
+                operations: u64::MAX,
+                together: 7,
+            },
             history: vec![Epoch { rate: 1e-3, loss: f64::INFINITY, seconds: 0.25 }; 3],
             drawn: vec![square(20), square(3)],
         }

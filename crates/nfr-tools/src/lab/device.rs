@@ -22,6 +22,9 @@ pub(super) struct Args {
     /// The box whose step is timed, in pixels
     #[arg(long = "box", value_name = "N", default_value_t = 40)]
     side: usize,
+    /// Time so many implicit networks in lockstep, each on one bitmap (more than once: of several)
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u8).range(1..))]
+    together: Vec<u8>,
     #[command(flatten)]
     experiment: ExperimentArgs,
 }
@@ -37,13 +40,17 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let (settings, accelerator) = (&context.settings, &context.accelerator);
         let mut out = io::stdout();
         writeln!(out, "{}\non {accelerator}", settings.label())?;
-        if accelerator.is_timed() {
-            let time = time_steps(settings, timed, samples.len(), accelerator)?;
+        for &together in args.together.iter().filter(|_| accelerator.is_timed()) {
+            let time = time_steps(settings, timed, together.into(), accelerator)?;
             let (side, milliseconds) = (args.side, time.seconds * 1e3);
             let (billions, rate) = (time.operations / 1e9, time.operations / time.seconds / 1e12);
+            let networks = match together {
+                1 => "the implicit network".to_owned(),
+                _ => format!("{together} implicit networks in lockstep, each"),
+            };
             writeln!(
                 out,
-                "a step of the implicit network on {side}×{side} pixels: {milliseconds:.2} ms, {billions:.1} GFLOP, \
+                "a step of {networks} on {side}×{side} pixels: {milliseconds:.2} ms, {billions:.1} GFLOP, \
                  {rate:.2} TFLOP/s; the first {ROUND} steps {:.1} s",
                 time.first
             )?;

@@ -122,6 +122,7 @@ impl ExperimentArgs {
             settings: self.settings(),
             accelerator,
             jobs: self.jobs,
+            together: 1,
             directory: Some(self.out()),
             resume: self.resume,
             merged: Vec::new(),

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use nfr_lab::dataset::{Dataset, SIDES};
 use nfr_lab::experiment::Experiment;
 use nfr_lab::family::{FamilyMember, weight_of};
-use nfr_lab::queue::{self, QueueShare, QueueState};
+use nfr_lab::queue::{self, QueueNetworks, QueuePart, QueueShare, QueueState};
 use nfr_lab::report::{OtherReport, ReportContext, write};
 use nfr_lab::settings::ExperimentScale;
 use nfr_lab::study::StudyPlan;
@@ -41,6 +41,12 @@ pub(super) struct Args {
     /// Do one part of several of the queue: 2/3 is every third training from the second on
     #[arg(long, value_name = "K/N", default_value = "1/1")]
     share: QueueShare,
+    /// Train the networks of one kind: implicit (with those of weights and typefaces) or masked
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    networks: QueueNetworks,
+    /// Train so many implicit networks in lockstep, which a large GPU does in less time than one after the other
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..))]
+    together: u8,
     /// Use the results of another run, on another machine perhaps, that are in this directory (more than once: of several)
     #[arg(long, value_name = "DIR")]
     merge: Vec<PathBuf>,
@@ -109,8 +115,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         styled: &single,
     };
     args.experiment.with(|context| {
-        let context = &Experiment { merged: args.merge.clone(), deadline, ..context.clone() };
-        let state = queue::run(&plan, context, args.share)?;
+        let together = args.together.into();
+        let context = &Experiment { merged: args.merge.clone(), deadline, together, ..context.clone() };
+        let state = queue::run(&plan, context, QueuePart { networks: args.networks, share: args.share })?;
         let mut out = io::stdout();
         writeln!(out, "{}\non {}", context.settings.label(), context.accelerator)?;
         let QueueState { finished, jobs } = state;
