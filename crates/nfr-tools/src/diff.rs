@@ -8,6 +8,7 @@ use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read};
 use super::progress::print_line;
+use super::source::SourceArgs;
 use nfr_convert::compare::diff::Sources;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::html::{self, SampleText};
@@ -41,9 +42,8 @@ pub struct Args {
     /// Sizes in pixels per em, as in 12, 8-64, 8-64:2 or 9,12,16-20
     #[arg(long, value_name = "SIZES", default_value = "8-64")]
     ppem: PpemList,
-    /// The font's index, if the original is a collection
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    index: u32,
+    #[command(flatten)]
+    source: SourceArgs,
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
@@ -74,9 +74,10 @@ pub struct Args {
 /// Fonts that do not belong together, a glyph without a model, a place that cannot be written, or a
 /// condition of `--fail-on` that holds.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let (original, neural) = (read(&args.original)?, read(&args.neural)?);
+    let neural = read(&args.neural)?;
     open_neural(&args.neural, &neural)?;
-    let pair = FontPair::open(&original, args.index, &neural)?;
+    let original = args.source.load(&args.original)?;
+    let pair = FontPair::open(&original.data, original.index, &neural)?;
     let selection = args.selection.selection()?;
     let gids = args.selection.resolve(pair.original(), modelled(pair.font())?, print_line)?;
     let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));

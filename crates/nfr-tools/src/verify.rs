@@ -9,6 +9,7 @@ use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{modelled, open_neural, read};
 use super::progress::print_line;
+use super::source::{Source, SourceArgs};
 use nfr_convert::compare::certificate::CertificateCheck;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::verification::Verification;
@@ -33,9 +34,8 @@ pub struct Args {
     /// Sizes at which points are compared, in pixels per em, as in 12, 8-64, 8-64:2 or 9,12,16-20 [default: all trained sizes]
     #[arg(long, value_name = "SIZES")]
     ppem: Option<PpemList>,
-    /// The font's index, if the original is a collection
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    index: u32,
+    #[command(flatten)]
+    source: SourceArgs,
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
@@ -60,10 +60,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// Compares the fonts and prints the result. Returns what does not hold.
 fn verify(args: &Args) -> Result<Vec<String>, Failure> {
-    let (original, neural) = (read(&args.original)?, read(&args.neural)?);
+    let (original, neural) = (args.source.load(&args.original)?, read(&args.neural)?);
     check_roles(args, &original, &neural)?;
     open_neural(&args.neural, &neural)?;
-    let pair = FontPair::open_edited(&original, args.index, &neural)?;
+    let pair = FontPair::open_edited(&original.data, original.index, &neural)?;
     let gids = args.selection.resolve(pair.original(), modelled(pair.font())?, print_line)?;
     let (first, last) = pair.font().ppem_range();
     let trained = || PpemList::from(first..=last);
@@ -110,9 +110,9 @@ impl Checked {
 }
 
 /// Refuses an original that was converted itself: its hints are gone.
-fn check_roles(args: &Args, original: &[u8], neural: &[u8]) -> Result<(), Failure> {
+fn check_roles(args: &Args, original: &Source, neural: &[u8]) -> Result<(), Failure> {
     let [first, second] = [&args.original, &args.neural].map(|path| path.display());
-    let original = open(original, args.index).map_err(|e| Failure::from(e).at(&first))?;
+    let original = open(&original.data, original.index).map_err(|e| Failure::from(e).at(&first))?;
     if !has_models(&original) {
         return Ok(());
     }
