@@ -86,8 +86,12 @@ impl SourceArgs {
             None if self.axis.is_empty() => return Err(no_place(&variations)),
             None => variations.complete(&self.axis)?,
         };
-        let instancer =
-            Instancer { python: &self.python, timeout: Duration::from_secs(self.instancer_timeout), path };
+        let instancer = Instancer {
+            python: &self.python,
+            timeout: Duration::from_secs(self.instancer_timeout),
+            path,
+            index: font.ttc_index(),
+        };
         let data = instancer.instance(&font, &place)?;
         let place: Vec<String> = place.iter().map(ToString::to_string).collect();
         Ok(Some(Source { data, index: 0, instance: Some(place.join(" ")) }))

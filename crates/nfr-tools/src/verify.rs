@@ -20,12 +20,12 @@ use nfr_convert::ppem::PpemList;
 ///
 /// The errors of each glyph's bitmaps are measured again, at all sizes of the models, and have to be no larger than the font's
 /// certificate says. Every point, on the curve or off it, is compared along x and y in 1/64 pixel with where skrifa's interpreter puts
-/// it, with the settings that the font was converted with; it has to be there if the font was converted to be exact (--quality 100),
+/// it, or its autohinter if the certificate names that, with the settings that the font was converted with; it has to be there if the font was converted to be exact (--quality 100),
 /// or if --at-most says how far it may be. Exits with 0 if all of that holds, with 1 if not, or if a glyph has no model or another
 /// outline, and with 2 if an error keeps it from comparing.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The hinted font
+    /// The font that it was made from: a font file, a collection, a web font (WOFF, WOFF2), or a variable font
     original: PathBuf,
     /// The neural font made from it
     neural: PathBuf,

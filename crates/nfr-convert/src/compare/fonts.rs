@@ -167,6 +167,7 @@ impl<'a> FontPair<'a> {
             original: names[0].to_owned(),
             neural: names[1].to_owned(),
             target: self.font.target().name().to_owned(),
+            hinter: self.teacher.hinter().name().to_owned(),
             ppem: ppem.to_string(),
             glyphs: gids.len(),
             table_bytes: self.font.table_len(),

@@ -106,6 +106,11 @@ impl Teacher {
         self.unhinted.units_per_em()
     }
 
+    /// What hints its glyphs.
+    pub fn hinter(&self) -> Hinter {
+        self.hinter
+    }
+
     /// The composite glyphs, ascending, that FreeType may hint otherwise: a program in them reads what another one wrote, in a
     /// way that skrifa does not follow.
     pub fn uncertain(&self) -> &[u16] {

@@ -52,11 +52,14 @@ pub(super) fn convert_all(args: &Args) -> Result<(), Failure> {
     let report = args.report.as_deref().map(Output::new).transpose()?;
     let (mut reports, mut failed) = (Vec::new(), Vec::new());
     for face in &faces {
+        if !args.quiet {
+            writeln!(io::stdout(), "{}", face.title)?;
+        }
         match convert(args, &data, face) {
             Ok((told, summary)) => {
                 reports.push(told.trim_end().to_owned());
                 if !args.quiet {
-                    writeln!(io::stdout(), "{}\n{summary}", face.title)?;
+                    writeln!(io::stdout(), "{summary}")?;
                 }
             }
             Err(failure) => {

@@ -136,11 +136,15 @@ fn write_summary(out: &mut String, report: &ReportFile<'_>, added: usize) -> fmt
     }
     writeln!(out, "table   {} bytes, {:.1} per glyph", report.table_bytes, report.bytes_per_glyph)?;
     let hints = &report.hint_bytes;
-    writeln!(
-        out,
-        "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
-        hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
-    )?;
+    if hints.total == 0 {
+        writeln!(out, "hints   none in the original")?;
+    } else {
+        writeln!(
+            out,
+            "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
+            hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
+        )?;
+    }
     let percent = 100.0 * report.output_bytes as f64 / report.input_bytes.max(1) as f64;
     writeln!(
         out,

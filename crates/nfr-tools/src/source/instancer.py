@@ -15,7 +15,8 @@ place = {tag.ljust(4): float(value) for tag, value in (argument.split("=") for a
 
 
 def instance(renamed):
-    font = TTFont(io.BytesIO(data))
+    # With the time of the original, the same font comes out the same.
+    font = TTFont(io.BytesIO(data), recalcTimestamp=False)
     return instancer.instantiateVariableFont(font, place, inplace=True, updateFontNames=renamed)
 
 

@@ -30,6 +30,8 @@ pub(super) struct Instancer<'a> {
     pub(super) timeout: Duration,
     /// The font's file, for messages.
     pub(super) path: &'a Path,
+    /// The font's index, if the file is a collection.
+    pub(super) index: Option<u32>,
 }
 
 /// A process that has ended.
@@ -110,11 +112,17 @@ impl Instancer<'_> {
     /// The failure without Python or fontTools, with the command that makes the instance elsewhere.
     fn unavailable(&self, what: &str, place: &[AxisValue]) -> Failure {
         let place: Vec<String> = place.iter().map(ToString::to_string).collect();
+        let (file, place) = (self.path.display(), place.join(" "));
+        // The instancer's command takes no collections.
+        let (first, file) = match self.index {
+            Some(index) => {
+                (format!("fonttools ttLib '{file}' -y {index} -o font.ttf && "), "font.ttf".into())
+            }
+            None => (String::new(), file.to_string()),
+        };
         Failure::failed(format!(
             "{what}, which makes the instance; install it (pip install fonttools), or name a Python that has it with --python, or \
-             make the instance elsewhere and pass that: fonttools varLib.instancer '{}' {} -o instance.ttf",
-            self.path.display(),
-            place.join(" ")
+             make the instance elsewhere and pass that: {first}fonttools varLib.instancer '{file}' {place} -o instance.ttf"
         ))
     }
 }

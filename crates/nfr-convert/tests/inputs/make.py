@@ -74,7 +74,7 @@ def variable():
         ]
     cvar = font["cvar"] = newTable("cvar")
     cvar.majorVersion, cvar.minorVersion = 1, 0
-    cvar.variations = [TupleVariation({"wght": (0, 1, 1)}, [index % 7 for index in range(len(font["cvt "].values))])]
+    cvar.variations = [TupleVariation({"wght": (0, 1, 1)}, [8 * (index % 7) for index in range(len(font["cvt "].values))])]
     return font
 
 
