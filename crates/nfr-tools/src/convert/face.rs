@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::Args;
+use super::arguments::Args;
 use super::into::Existing;
 use super::prepare::{Prepared, Subject, prepare};
 use super::summary::{About, report, summary_text};

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use read_fonts::{FileRef, FontRef};
 use serde::Serialize;
 
-use super::{Args, check_paths, face};
+use super::arguments::Args;
+use super::face;
 use crate::failure::Failure;
 use crate::files::Output;
 use crate::progress::print_line;
@@ -40,7 +41,7 @@ pub(super) fn convert_all(args: &Args) -> Result<(), Failure> {
     let data = read_unpacked(&args.input)?;
     let faces = faces(args, &data)?;
     for face in &faces {
-        check_paths(args, &face.output)?;
+        args.check_paths(&face.output)?;
     }
     fs::create_dir_all(&args.output).map_err(|e| {
         Failure::failed(format!(

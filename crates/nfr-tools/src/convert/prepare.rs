@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::Args;
+use super::arguments::Args;
 use super::into::Existing;
 use crate::failure::Failure;
 use crate::progress::{Reporter, Verbosity, print_line};
