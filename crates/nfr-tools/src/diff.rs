@@ -8,6 +8,8 @@ use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read};
 use super::progress::print_line;
+use super::source::SourceArgs;
+use nfr_convert::Hinter;
 use nfr_convert::compare::diff::Sources;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::html::{self, SampleText};
@@ -29,10 +31,10 @@ const FALLBACK_SIZES: usize = 6;
 /// Compares a neural font with the hinted font that it was made from
 ///
 /// The error is that of the models' bitmaps against the hinted ones, over the union of their boxes; the same
-/// figures for the unhinted outlines stand beside it.
+/// figures for the unhinted outlines stand beside it. A font that was converted with --hinter auto is compared with autohinted bitmaps.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The hinted font
+    /// The font that it was made from: a font file, a collection, a web font (WOFF, WOFF2), or a variable font
     original: PathBuf,
     /// The neural font made from it
     neural: PathBuf,
@@ -41,9 +43,8 @@ pub struct Args {
     /// Sizes in pixels per em, as in 12, 8-64, 8-64:2 or 9,12,16-20
     #[arg(long, value_name = "SIZES", default_value = "8-64")]
     ppem: PpemList,
-    /// The font's index, if the original is a collection
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    index: u32,
+    #[command(flatten)]
+    source: SourceArgs,
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
@@ -74,9 +75,9 @@ pub struct Args {
 /// Fonts that do not belong together, a glyph without a model, a place that cannot be written, or a
 /// condition of `--fail-on` that holds.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let (original, neural) = (read(&args.original)?, read(&args.neural)?);
+    let (original, neural) = (args.source.load(&args.original)?, read(&args.neural)?);
     open_neural(&args.neural, &neural)?;
-    let pair = FontPair::open(&original, args.index, &neural)?;
+    let pair = FontPair::open(&original.data, original.index, &neural)?;
     let selection = args.selection.selection()?;
     let gids = args.selection.resolve(pair.original(), modelled(pair.font())?, print_line)?;
     let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));
@@ -142,7 +143,7 @@ fn draw(
     let totals = &report.totals;
     let headings = [
         heading("neural", totals.neural.figures.mae),
-        "hinted".to_owned(),
+        if pair.teacher().hinter() == Hinter::Auto { "autohinted" } else { "hinted" }.to_owned(),
         heading("unhinted", totals.unhinted.figures.mae),
     ];
     let font = LabelFont::new(pair.original())?;

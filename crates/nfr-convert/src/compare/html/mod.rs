@@ -51,7 +51,8 @@ pub fn page(report: &Report, sources: Sources<'_>, text: &SampleText<'_>) -> Res
             body {
                 h1 { (title) }
                 p {
-                    (glyph_count_text(header.glyphs)) " at " (header.ppem) " ppem, hinted for " (header.target) "; "
+                    (glyph_count_text(header.glyphs)) " at " (header.ppem) " ppem, hinted for " (header.target)
+                    @if header.hinter == "auto" { " by skrifa's autohinter" } "; "
                     (header.table_bytes) " bytes of models, " (format!("{:.1}", header.bytes_per_glyph)) " per glyph."
                 }
                 (error_table(report))
