@@ -152,6 +152,8 @@ class Report:
 
     @staticmethod
     def kind(text):
+        """A text without its advice, the place in a program, and numbers."""
+        text = re.sub(r"\(\w+\[\d+\]@\d+(?::\S+)?: ", "(", text.split(";")[0])
         text = re.sub(r" \([\d, ]+(?:and \d+ more)?\)", "", text)
         return re.sub(r"\d+(?:, \d+)*", "n", text).replace("n glyphs", "n glyph")
 
@@ -234,7 +236,7 @@ Hinted for black and white:
 
 {mono}
 
-FreeType is given the fonts without the flags that say that contours overlap (`OVERLAP_SIMPLE`, `OVERLAP_COMPOUND`; {overlapping} faces with hints have them): with such a
+FreeType is given the fonts without the flags that say that contours overlap (`OVERLAP_SIMPLE`, `OVERLAP_COMPOUND`; {overlapping} of these faces have them): with such a
 flag it draws a glyph from 4×4 samples a pixel, in place of exact areas, hinted or not.
 
 ## Times
