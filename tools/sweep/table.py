@@ -56,12 +56,13 @@ class Report:
         self.unreadable = [(f, r["unreadable"]) for f, r in results if "unreadable" in r]
         self.ended = [(f, r["ended"]) for f, r in results if "ended" in r]
         self.panics = [(f, r["panics"]) for f, r in results if r.get("panics") and "ended" not in r]
+        self.broken = [(f, t, r[t]["broken"]) for f, r in self.hinted for t in TARGETS if "broken" in r[t]]
         self.outcomes = [(f, r, t, r[t]["converted"]) for f, r in self.hinted for t in TARGETS if "converted" in r[t]]
         self.converted = len({id(f) for f, *_ in self.outcomes})
         self.worse = [(f, t, worse) for f, _, t, o in self.outcomes for worse in o["worse"]]
         silent = [worse for worse in self.worse if not worse[2]["warned"]]
         self.silent = {judge: [w for w in silent if w[2]["judge"] == judge] for judge in ("skrifa", "FreeType")}
-        self.failures = len(self.ended) + len(self.panics) + len(silent)
+        self.failures = len(self.ended) + len(self.panics) + len(self.broken) + len(silent)
 
     def of(self, target):
         return [(f, o) for f, _, t, o in self.outcomes if t == target]
@@ -85,6 +86,7 @@ class Report:
                 ("glyphs converted", both(glyphs)),
                 ("glyphs left without a model, with a warning", both(left_out)),
                 ("**panics, crashes**, of faces or caught", f"{self.crashes()} | {self.crashes()}"),
+                ("**converted fonts that do not open or draw**", both(lambda t: sum(t == target for _, target, _ in self.broken))),
                 ("**no result in time**", f"{self.late()} | {self.late()}"),
                 ("**glyphs worse than unhinted without a warning**, by skrifa", both(lambda t: self.silent_of("skrifa", t))),
                 ("**the same** by FreeType", both(lambda t: self.silent_of("FreeType", t))),
@@ -104,6 +106,7 @@ class Report:
         """What should not be there."""
         lines = [f"- {face_text(f)}: {how}" for f, how in self.ended]
         lines += [f"- {face_text(f)}: {count} caught panics" for f, count in self.panics]
+        lines += [f"- {face_text(f)}, {target}: {error}" for f, target, error in self.broken]
         for judge, silent in self.silent.items():
             for face, target, w in silent:
                 figures = f"mae {w['neural']:.4f}, unhinted {w['unhinted']:.4f}, by {judge}"
@@ -144,7 +147,8 @@ class Report:
         counts = collections.defaultdict(lambda: [0, 0])
         for _, result in self.hinted:
             for at, target in enumerate(TARGETS):
-                texts = ["refused: " + result[target]["refused"]] if "refused" in result[target] else result[target]["converted"]["warnings"]
+                outcome = result[target]
+                texts = ["refused: " + outcome["refused"]] if "refused" in outcome else outcome.get("converted", {}).get("warnings", [])
                 for text in {self.kind(text) for text in texts}:
                     counts[text][at] += 1
         body = [(text.replace("|", "\\|"), *count) for text, count in sorted(counts.items(), key=lambda item: (-sum(item[1]), item[0]))]
@@ -198,8 +202,8 @@ class Report:
             outcome = result[target]
             if not any(result["hints"].values()):
                 cells += ["no hints"] + [""] * (len(figures) + 5)
-            elif "refused" in outcome:
-                cells += [outcome["refused"].split(";")[0]] + [""] * (len(figures) + 5)
+            elif "converted" not in outcome:
+                cells += [(outcome.get("refused") or outcome["broken"]).split(";")[0]] + [""] * (len(figures) + 5)
             else:
                 o = outcome["converted"]
                 worst = o["worst"] or {"gid": "", "ppem": "", "mae": 0.0}

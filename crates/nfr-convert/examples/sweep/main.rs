@@ -63,6 +63,8 @@ struct Hints {
 enum Outcome {
     Refused(String),
     Converted(Converted),
+    /// The font that was written does not open, or a glyph of it is not drawn.
+    Broken(String),
 }
 
 #[derive(Serialize)]
@@ -91,8 +93,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         units_per_em: font.head()?.units_per_em(),
         hints: hints(&font)?,
         overlapping,
-        smooth: outcome(&original, &glyphs, Target::Smooth)?,
-        mono: outcome(&original, &glyphs, Target::Mono)?,
+        smooth: outcome(&original, &glyphs, Target::Smooth),
+        mono: outcome(&original, &glyphs, Target::Mono),
         glyphs,
     };
     println!("{}", serde_json::to_string(&face)?);
@@ -114,9 +116,8 @@ fn hints(font: &FontRef<'_>) -> Result<Hints, Box<dyn Error>> {
     Ok(Hints { fpgm: bytes(b"fpgm"), prep: bytes(b"prep"), programs })
 }
 
-/// Converts and compares for one target. What the converter refuses is an outcome; a font that it writes and that cannot be opened, or
-/// a glyph of it that cannot be drawn, is an error.
-fn outcome(original: &Original<'_>, glyphs: &[Chosen], target: Target) -> Result<Outcome, Box<dyn Error>> {
+/// Converts and compares for one target.
+fn outcome(original: &Original<'_>, glyphs: &[Chosen], target: Target) -> Outcome {
     let mut gids: Vec<u16> = glyphs.iter().map(|glyph| glyph.gid).collect();
     gids.sort_unstable();
     // Fields take minutes of training, and a build with the feature `train`.
@@ -125,17 +126,20 @@ fn outcome(original: &Original<'_>, glyphs: &[Chosen], target: Target) -> Result
     let (warnings, began) = (Warnings::default(), Instant::now());
     let conversion = match convert(original.data, &options, &warnings) {
         Ok(conversion) => conversion,
-        Err(error) => return Ok(Outcome::Refused(error.to_string())),
+        Err(error) => return Outcome::Refused(error.to_string()),
     };
     let seconds = began.elapsed().as_secs_f64();
     let converted: Vec<Chosen> =
         glyphs.iter().filter(|glyph| !conversion.left_out.contains(&glyph.gid)).copied().collect();
-    let judged = judge::judge(original, conversion.font, &converted, target, PPEM, &warnings)?;
-    Ok(Outcome::Converted(Converted {
+    let judged = match judge::judge(original, conversion.font, &converted, target, PPEM, &warnings) {
+        Ok(judged) => judged,
+        Err(error) => return Outcome::Broken(error.to_string()),
+    };
+    Outcome::Converted(Converted {
         seconds,
         table_bytes: conversion.table_bytes,
         left_out: conversion.left_out,
         warnings: warnings.texts(),
         judged,
-    }))
+    })
 }
