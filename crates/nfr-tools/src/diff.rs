@@ -12,14 +12,15 @@ use super::source::SourceArgs;
 use nfr_convert::Hinter;
 use nfr_convert::compare::diff::Sources;
 use nfr_convert::compare::fonts::FontPair;
-use nfr_convert::compare::html::{self, SampleText};
+use nfr_convert::compare::html::{self, SampleText, TextFont};
 use nfr_convert::compare::picture::{LabelFont, SheetRow, png, sheet, text_line};
 use nfr_convert::compare::report::Report;
-use nfr_convert::compare::sample_text::{PANGRAM, WORD, sample_glyphs};
+use nfr_convert::compare::sample_text::{PANGRAM, WORD, sample_characters, sample_glyphs};
 use nfr_convert::compare::source::BitmapSource;
 use nfr_convert::compare::threshold::FailOn;
 use nfr_convert::error::Error;
 use nfr_convert::ppem::PpemList;
+use nfr_convert::select::Selection;
 
 /// The sizes of the web page's text, in pixels per em: those at which hinting shows.
 const PAGE_SIZES: std::ops::RangeInclusive<u16> = 9..=24;
@@ -51,7 +52,7 @@ pub struct Args {
     /// Write the whole report as JSON; "-" prints it instead of the table
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write a web page, DIR/index.html
+    /// Write a web page, DIR/index.html: figures, the worst glyphs, any text at any size, and a search for glyphs
     #[arg(long, value_name = "DIR")]
     html: Option<PathBuf>,
     /// Draw text as neural, hinted and unhinted bitmaps side by side
@@ -94,12 +95,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         output.write(as_json.as_bytes())?;
     }
     if let Some(output) = page {
-        let text = sample_glyphs(pair.original(), &selection, &gids, PANGRAM)?;
-        let sizes = sizes_to_show(&args.ppem, |ppem| PAGE_SIZES.contains(&ppem));
-        let advance = |gid: u16, ppem: u16| pair.font().advance(gid.into(), ppem.into());
-        let text = SampleText { gids: &text, sizes: &sizes, advance: &advance };
-        let html = pair.with_sources(&gids, |sources| html::page(&report, sources, &text))?;
-        output.write(html.as_bytes())?;
+        output.write(draw_page(args, &pair, &report, &selection, &gids)?.as_bytes())?;
     }
     if let Some(output) = picture {
         let text = sample_glyphs(pair.original(), &selection, &gids, WORD)?;
@@ -107,6 +103,29 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&report));
     if failures.is_empty() { Ok(()) } else { Err(Failure::failed(failures.join("; "))) }
+}
+
+/// The page of `--html`.
+fn draw_page(
+    args: &Args,
+    pair: &FontPair<'_>,
+    report: &Report,
+    selection: &Selection,
+    gids: &[u16],
+) -> Result<String, Error> {
+    let sample = sample_glyphs(pair.original(), selection, gids, PANGRAM)?;
+    let sizes = sizes_to_show(&args.ppem, |ppem| PAGE_SIZES.contains(&ppem));
+    let advance = |gid: u16, ppem: u16| pair.font().advance(gid.into(), ppem.into());
+    let text = SampleText { gids: &sample, sizes: &sizes, advance: &advance };
+    let (characters, units_per_em) = (pair.characters(gids)?, pair.teacher().units_per_em());
+    let font = TextFont {
+        characters: &characters,
+        units_per_em,
+        sizes: args.ppem.sizes(),
+        first_text: &sample_characters(selection, &characters, PANGRAM),
+        advance: &|gid| advance(gid, units_per_em),
+    };
+    pair.with_sources(gids, |sources| html::page(report, sources, &text, &font))
 }
 
 /// The page's file, with its directory made.

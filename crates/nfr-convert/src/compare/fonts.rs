@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use read_fonts::FontRef;
+use skrifa::GlyphId;
 
 use super::diff::{Sources, compare};
 use super::points::Compared;
@@ -228,6 +229,23 @@ impl<'a> FontPair<'a> {
             Err(nfr::Error::StaleModel(_)) => Ok(Err(NoPoints::Stale)),
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// The characters of these glyphs, ascending, each with its glyph. `gids` are in ascending order.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if the original's table directory cannot be read.
+    pub fn characters(&self, gids: &[u16]) -> Result<Vec<(char, u16)>, Error> {
+        let font = owned(&self.original)?;
+        let pair = |(code, gid): (u32, GlyphId)| {
+            let gid = u16::try_from(gid.to_u32()).ok().filter(|gid| gids.binary_search(gid).is_ok())?;
+            Some((char::from_u32(code)?, gid))
+        };
+        let mut characters: Vec<(char, u16)> = font.charmap().unicodes().filter_map(pair).collect();
+        characters.sort_unstable();
+        characters.dedup_by_key(|(character, _)| *character);
+        Ok(characters)
     }
 
     /// The name and the first character of each glyph.
