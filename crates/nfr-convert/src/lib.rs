@@ -40,8 +40,8 @@ pub mod writer;
 
 pub use conversion::{Conversion, GlyphReport, Progress};
 pub use error::Error;
-pub use input::{closure, open, ppem, select};
-pub use options::{Options, Quality, Shape};
+pub use input::{closure, face_names, open, ppem, select, variable, web_font};
+pub use options::{Hinter, Options, Quality, Shape};
 pub use pipeline::{convert, resume};
 
 /// Runs the examples of the README as tests.

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example figures [-- OPTIONS] [FONT.ttf ...]`: printable ASCII at 8–64 ppem; without fonts,
 //! the three that README speaks of. `--quality 0,25,50,75,100` prints a line for each of these settings, and
-//! `--target mono` hints in x too, and `--shape field` trains fields, in a build with `--features train`. `--train-ppem 8-64:2`
+//! `--target mono` hints in x too, `--hinter auto` learns from the autohinter, and `--shape field` trains fields, in a build with `--features train`. `--train-ppem 8-64:2`
 //! learns from these sizes alone and measures the error at the others.
 //! The error is measured on the finished files; the last but one column is against the plain outline, at sizes above
 //! the trained ones.
@@ -19,7 +19,7 @@ use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::ppem::PpemList;
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Options, Progress, Quality, Shape, convert};
+use nfr_convert::{Hinter, Options, Progress, Quality, Shape, convert};
 
 const FONTS: [&str; 3] =
     ["fonts/LiberationSans-Regular.ttf", "fonts/LiberationSerif-Regular.ttf", "fonts/DejaVuSans.ttf"];
@@ -34,6 +34,9 @@ struct Args {
     /// What to hint for
     #[arg(long, default_value_t, value_parser = nfr_tools::target)]
     target: Target,
+    /// Whose hints to learn: the font's, or those of skrifa's autohinter
+    #[arg(long, default_value_t, value_parser = nfr_tools::hinter)]
+    hinter: Hinter,
     /// Where models have their shapes from
     #[arg(long, default_value = "auto", value_parser = nfr_tools::shape)]
     shape: Shape,
@@ -82,6 +85,7 @@ fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>>
         gids: selection.resolve(&font, [])?.gids,
         jobs,
         target: args.target,
+        hinter: args.hinter,
         shape: args.shape,
         ppem: ppem.clone(),
         ppem_step,
@@ -102,7 +106,11 @@ fn line(path: &str, quality: f32, args: &Args) -> Result<String, Box<dyn Error>>
     let (neural, unhinted) = (&report.totals.neural.figures, &report.totals.unhinted.figures);
     let worst = report.by_glyph.first().map_or(0.0, |g| g.compared.neural.figures.mae);
     let small = report.bands.first().map_or(0.0, |b| b.compared.neural.figures.mae);
-    let large = large_size_mae(&Teacher::new(&font, args.target)?, &conversion.font, &options.gids)?;
+    let large = large_size_mae(
+        &Teacher::with_hinter(&font, args.target, args.hinter)?,
+        &conversion.font,
+        &options.gids,
+    )?;
     Ok(format!(
         "| {path} | {quality} | {:.5} ({:.4}) | {:.3} % ({:.1} %) | {small:.5} | {worst:.5} | {:.1} | {large:.5} | {seconds:.1} s |",
         neural.mae,

@@ -7,10 +7,10 @@ use clap::Args;
 use super::failure::Failure;
 use super::files::read;
 use nfr::Target;
-use nfr_convert::Shape;
 use nfr_convert::select::{
     CodePoints, GlyphIds, GlyphNames, Selected, Selection, missing_characters, missing_text,
 };
+use nfr_convert::{Hinter, Shape};
 use read_fonts::FontRef;
 
 const HEADING: &str = "Glyphs (all that is given adds up)";
@@ -22,6 +22,15 @@ const HEADING: &str = "Glyphs (all that is given adds up)";
 /// A sentence for any other word.
 pub fn target(name: &str) -> Result<Target, String> {
     Target::from_name(name).ok_or_else(|| format!("unknown target {name:?}; use smooth, mono or lcd"))
+}
+
+/// Reads the name of a hinter.
+///
+/// # Errors
+///
+/// A sentence for any other word.
+pub fn hinter(name: &str) -> Result<Hinter, String> {
+    Hinter::from_name(name).ok_or_else(|| format!("unknown hinter {name:?}; use font or auto"))
 }
 
 /// Reads the name of a shape.

@@ -8,16 +8,19 @@ use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read};
 use super::progress::print_line;
+use super::source::SourceArgs;
+use nfr_convert::Hinter;
 use nfr_convert::compare::diff::Sources;
 use nfr_convert::compare::fonts::FontPair;
-use nfr_convert::compare::html::{self, SampleText};
+use nfr_convert::compare::html::{self, SampleText, TextFont};
 use nfr_convert::compare::picture::{LabelFont, SheetRow, png, sheet, text_line};
 use nfr_convert::compare::report::Report;
-use nfr_convert::compare::sample_text::{PANGRAM, WORD, sample_glyphs};
+use nfr_convert::compare::sample_text::{PANGRAM, WORD, sample_characters, sample_glyphs};
 use nfr_convert::compare::source::BitmapSource;
 use nfr_convert::compare::threshold::FailOn;
 use nfr_convert::error::Error;
 use nfr_convert::ppem::PpemList;
+use nfr_convert::select::Selection;
 
 /// The sizes of the web page's text, in pixels per em: those at which hinting shows.
 const PAGE_SIZES: std::ops::RangeInclusive<u16> = 9..=24;
@@ -29,10 +32,10 @@ const FALLBACK_SIZES: usize = 6;
 /// Compares a neural font with the hinted font that it was made from
 ///
 /// The error is that of the models' bitmaps against the hinted ones, over the union of their boxes; the same
-/// figures for the unhinted outlines stand beside it.
+/// figures for the unhinted outlines stand beside it. A font that was converted with --hinter auto is compared with autohinted bitmaps.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The hinted font
+    /// The font that it was made from: a font file, a collection, a web font (WOFF, WOFF2), or a variable font
     original: PathBuf,
     /// The neural font made from it
     neural: PathBuf,
@@ -41,16 +44,15 @@ pub struct Args {
     /// Sizes in pixels per em, as in 12, 8-64, 8-64:2 or 9,12,16-20
     #[arg(long, value_name = "SIZES", default_value = "8-64")]
     ppem: PpemList,
-    /// The font's index, if the original is a collection
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    index: u32,
+    #[command(flatten)]
+    source: SourceArgs,
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
     /// Write the whole report as JSON; "-" prints it instead of the table
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write a web page, DIR/index.html
+    /// Write a web page, DIR/index.html: figures, the worst glyphs, any text at any size, and a search for glyphs
     #[arg(long, value_name = "DIR")]
     html: Option<PathBuf>,
     /// Draw text as neural, hinted and unhinted bitmaps side by side
@@ -74,9 +76,9 @@ pub struct Args {
 /// Fonts that do not belong together, a glyph without a model, a place that cannot be written, or a
 /// condition of `--fail-on` that holds.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let (original, neural) = (read(&args.original)?, read(&args.neural)?);
+    let (original, neural) = (args.source.load(&args.original)?, read(&args.neural)?);
     open_neural(&args.neural, &neural)?;
-    let pair = FontPair::open(&original, args.index, &neural)?;
+    let pair = FontPair::open(&original.data, original.index, &neural)?;
     let selection = args.selection.selection()?;
     let gids = args.selection.resolve(pair.original(), modelled(pair.font())?, print_line)?;
     let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));
@@ -93,12 +95,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         output.write(as_json.as_bytes())?;
     }
     if let Some(output) = page {
-        let text = sample_glyphs(pair.original(), &selection, &gids, PANGRAM)?;
-        let sizes = sizes_to_show(&args.ppem, |ppem| PAGE_SIZES.contains(&ppem));
-        let advance = |gid: u16, ppem: u16| pair.font().advance(gid.into(), ppem.into());
-        let text = SampleText { gids: &text, sizes: &sizes, advance: &advance };
-        let html = pair.with_sources(&gids, |sources| html::page(&report, sources, &text))?;
-        output.write(html.as_bytes())?;
+        output.write(draw_page(args, &pair, &report, &selection, &gids)?.as_bytes())?;
     }
     if let Some(output) = picture {
         let text = sample_glyphs(pair.original(), &selection, &gids, WORD)?;
@@ -106,6 +103,29 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&report));
     if failures.is_empty() { Ok(()) } else { Err(Failure::failed(failures.join("; "))) }
+}
+
+/// The page of `--html`.
+fn draw_page(
+    args: &Args,
+    pair: &FontPair<'_>,
+    report: &Report,
+    selection: &Selection,
+    gids: &[u16],
+) -> Result<String, Error> {
+    let sample = sample_glyphs(pair.original(), selection, gids, PANGRAM)?;
+    let sizes = sizes_to_show(&args.ppem, |ppem| PAGE_SIZES.contains(&ppem));
+    let advance = |gid: u16, ppem: u16| pair.font().advance(gid.into(), ppem.into());
+    let text = SampleText { gids: &sample, sizes: &sizes, advance: &advance };
+    let (characters, units_per_em) = (pair.characters(gids)?, pair.teacher().units_per_em());
+    let font = TextFont {
+        characters: &characters,
+        units_per_em,
+        sizes: args.ppem.sizes(),
+        first_text: &sample_characters(selection, &characters, PANGRAM),
+        advance: &|gid| advance(gid, units_per_em),
+    };
+    pair.with_sources(gids, |sources| html::page(report, sources, &text, &font))
 }
 
 /// The page's file, with its directory made.
@@ -142,7 +162,7 @@ fn draw(
     let totals = &report.totals;
     let headings = [
         heading("neural", totals.neural.figures.mae),
-        "hinted".to_owned(),
+        if pair.teacher().hinter() == Hinter::Auto { "autohinted" } else { "hinted" }.to_owned(),
         heading("unhinted", totals.unhinted.figures.mae),
     ];
     let font = LabelFont::new(pair.original())?;

@@ -22,10 +22,11 @@ mod exactness;
 mod failure;
 mod files;
 mod progress;
+mod source;
 #[cfg(not(all(feature = "bench", feature = "lab")))]
 mod unbuilt;
 
-pub use args::{SelectionArgs, shape, target};
+pub use args::{SelectionArgs, hinter, shape, target};
 pub use failure::{Failure, finish};
 #[cfg(not(feature = "bench"))]
 pub use unbuilt::bench;

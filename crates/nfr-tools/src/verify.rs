@@ -9,6 +9,7 @@ use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{modelled, open_neural, read};
 use super::progress::print_line;
+use super::source::{Source, SourceArgs};
 use nfr_convert::compare::certificate::CertificateCheck;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::verification::Verification;
@@ -19,12 +20,12 @@ use nfr_convert::ppem::PpemList;
 ///
 /// The errors of each glyph's bitmaps are measured again, at all sizes of the models, and have to be no larger than the font's
 /// certificate says. Every point, on the curve or off it, is compared along x and y in 1/64 pixel with where skrifa's interpreter puts
-/// it, with the settings that the font was converted with; it has to be there if the font was converted to be exact (--quality 100),
+/// it, or its autohinter if the certificate names that, with the settings that the font was converted with; it has to be there if the font was converted to be exact (--quality 100),
 /// or if --at-most says how far it may be. Exits with 0 if all of that holds, with 1 if not, or if a glyph has no model or another
 /// outline, and with 2 if an error keeps it from comparing.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The hinted font
+    /// The font that it was made from: a font file, a collection, a web font (WOFF, WOFF2), or a variable font
     original: PathBuf,
     /// The neural font made from it
     neural: PathBuf,
@@ -33,9 +34,8 @@ pub struct Args {
     /// Sizes at which points are compared, in pixels per em, as in 12, 8-64, 8-64:2 or 9,12,16-20 [default: all trained sizes]
     #[arg(long, value_name = "SIZES")]
     ppem: Option<PpemList>,
-    /// The font's index, if the original is a collection
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    index: u32,
+    #[command(flatten)]
+    source: SourceArgs,
     /// Threads; the result does not depend on it
     #[arg(long, value_name = "N", default_value_t = all_cores(), value_parser = jobs)]
     jobs: usize,
@@ -60,10 +60,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// Compares the fonts and prints the result. Returns what does not hold.
 fn verify(args: &Args) -> Result<Vec<String>, Failure> {
-    let (original, neural) = (read(&args.original)?, read(&args.neural)?);
+    let (original, neural) = (args.source.load(&args.original)?, read(&args.neural)?);
     check_roles(args, &original, &neural)?;
     open_neural(&args.neural, &neural)?;
-    let pair = FontPair::open_edited(&original, args.index, &neural)?;
+    let pair = FontPair::open_edited(&original.data, original.index, &neural)?;
     let gids = args.selection.resolve(pair.original(), modelled(pair.font())?, print_line)?;
     let (first, last) = pair.font().ppem_range();
     let trained = || PpemList::from(first..=last);
@@ -110,9 +110,9 @@ impl Checked {
 }
 
 /// Refuses an original that was converted itself: its hints are gone.
-fn check_roles(args: &Args, original: &[u8], neural: &[u8]) -> Result<(), Failure> {
+fn check_roles(args: &Args, original: &Source, neural: &[u8]) -> Result<(), Failure> {
     let [first, second] = [&args.original, &args.neural].map(|path| path.display());
-    let original = open(original, args.index).map_err(|e| Failure::from(e).at(&first))?;
+    let original = open(&original.data, original.index).map_err(|e| Failure::from(e).at(&first))?;
     if !has_models(&original) {
         return Ok(());
     }

@@ -67,7 +67,8 @@ fn what_is_no_font_is_refused() {
         nfr(&["diff", SANS, &input]).fails_with(&["in.ttf", "pass a .ttf"]);
     }
     let web_font = directory.write("in.woff2", b"wOF2\0\x01\0\0");
-    convert(&directory, &web_font, &[]).fails_with(&["in.woff2", "decompress"]);
+    convert(&directory, &web_font, &[]).fails_with(&["in.woff2", "truncated"]);
+    nfr(&["info", &web_font]).fails_with(&["in.woff2", "unpack it"]);
 }
 
 #[test]

@@ -176,7 +176,7 @@ fn diff_writes_a_page_and_a_picture_that_need_nothing_else() {
     let args = ["diff", SANS, font, "--ppem", "10-14", "--html", &page, "--png", &png, "--json", &report];
     assert!(nfr(&args).succeeds().stdout.contains("worst glyphs"));
     let html = std::fs::read_to_string(directory.path("page/here/index.html")).unwrap();
-    for part in ["<svg", "polyline", "data:image/png;base64,", "68 a", "74 g", "</html>"] {
+    for part in ["id=\"explorer\"", "<svg", "polyline", "data:image/png;base64,", "68 a", "74 g", "</html>"] {
         assert!(html.contains(part), "{part}");
     }
     assert!(!html.contains("http"), "the page loads something");

@@ -10,7 +10,7 @@ use nfr::internals::table::{HEADER_LEN, OUTLINE_MODELS, TAG};
 use write_fonts::FontBuilder;
 
 use crate::assemble::assemble;
-use crate::compare::fonts::FontPair;
+use crate::compare::fonts::{FontPair, hinter_of};
 use crate::error::Error;
 use crate::writer::{flags_mut, write_certificate, write_dropout};
 use font::ConvertedFont;
@@ -48,7 +48,7 @@ pub fn compact(data: &[u8]) -> Result<Vec<u8>, Error> {
 ///
 /// # Errors
 ///
-/// `InvalidParameter` if the two were not converted for the same sizes and the same target, from the same font; those of damaged
+/// `InvalidParameter` if the two were not converted for the same sizes, the same target and by the same hinter, from the same font; those of damaged
 /// models.
 pub fn merge(original: (&[u8], u32), base: &[u8], addition: &[u8], jobs: usize) -> Result<Vec<u8>, Error> {
     let (base, addition) = (ConvertedFont::open(base)?, ConvertedFont::open(addition)?);
@@ -98,12 +98,13 @@ fn check_same_conversion(base: &ConvertedFont<'_>, addition: &ConvertedFont<'_>)
     let are_same = a.outline_hash == b.outline_hash
         && (a.target, a.first_ppem, a.last_ppem) == (b.target, b.first_ppem, b.last_ppem)
         && a.outlines_dropped == b.outlines_dropped
+        && hinter_of(&base.font)? == hinter_of(&addition.font)?
         && base.font.glyph_count() == addition.font.glyph_count();
     if are_same {
         return Ok(());
     }
     Err(Error::InvalidParameter(
-        "the two fonts are not conversions of the same font for the same sizes and target; convert it with the options of the \
+        "the two fonts are not conversions of the same font for the same sizes, target and hinter; convert it with the options of the \
          first"
             .into(),
     ))

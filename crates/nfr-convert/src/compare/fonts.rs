@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use read_fonts::FontRef;
+use skrifa::GlyphId;
 
 use super::diff::{Sources, compare};
 use super::points::Compared;
@@ -12,6 +13,7 @@ use super::verification::{NoPoints, NotCompared, Subject, Verification};
 use crate::assemble::outline_hash;
 use crate::error::Error;
 use crate::open::{open, owned};
+use crate::options::Hinter;
 use crate::parallel;
 use crate::ppem::PpemList;
 use crate::select::{glyph_count, glyph_names};
@@ -29,7 +31,7 @@ pub struct FontPair<'a> {
 }
 
 impl<'a> FontPair<'a> {
-    /// Opens both files. `index` counts the fonts of the original, should that be a collection.
+    /// Opens both files. The original is hinted as the neural font's certificate says. `index` counts the fonts of the original, should that be a collection.
     ///
     /// # Errors
     ///
@@ -56,10 +58,27 @@ impl<'a> FontPair<'a> {
     /// As [`open`], [`Font::new`] and [`Teacher::new`]; `InvalidParameter` if outlines were dropped and those of the original are
     /// not the ones that the models were trained from.
     pub fn open_edited(original: &'a [u8], index: u32, neural: &'a [u8]) -> Result<Self, Error> {
+        let font = Font::new(neural.to_vec()).map_err(|e| about("the neural font", e.into()))?;
+        let hinter = hinter_of(&font)?;
+        Self::open_taught(original, index, neural, hinter)
+    }
+
+    /// Opens both files as [`FontPair::open_edited`] does, the neural one without a look at which hinter its certificate names.
+    ///
+    /// # Errors
+    ///
+    /// As [`FontPair::open_edited`].
+    pub(crate) fn open_taught(
+        original: &'a [u8],
+        index: u32,
+        neural: &'a [u8],
+        hinter: Hinter,
+    ) -> Result<Self, Error> {
         let neural_file = open(neural, 0).map_err(|e| about("the neural font", e))?;
         let font = Font::new(neural.to_vec()).map_err(|e| about("the neural font", e.into()))?;
         let original = open(original, index).map_err(|e| about("the original font", e))?;
-        let teacher = Teacher::new(&original, font.target()).map_err(|e| about("the original font", e))?;
+        let teacher = Teacher::with_hinter(&original, font.target(), hinter)
+            .map_err(|e| about("the original font", e))?;
         if font.outlines_dropped() && outline_hash(&original)? != nfr::internals::header(&font).outline_hash {
             return Err(Error::InvalidParameter(
                 "the outlines of the original font are not those that the models were trained from; pass the \
@@ -149,6 +168,7 @@ impl<'a> FontPair<'a> {
             original: names[0].to_owned(),
             neural: names[1].to_owned(),
             target: self.font.target().name().to_owned(),
+            hinter: self.teacher.hinter().name().to_owned(),
             ppem: ppem.to_string(),
             glyphs: gids.len(),
             table_bytes: self.font.table_len(),
@@ -211,6 +231,23 @@ impl<'a> FontPair<'a> {
         }
     }
 
+    /// The characters of these glyphs, ascending, each with its glyph. `gids` are in ascending order.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if the original's table directory cannot be read.
+    pub fn characters(&self, gids: &[u16]) -> Result<Vec<(char, u16)>, Error> {
+        let font = owned(&self.original)?;
+        let pair = |(code, gid): (u32, GlyphId)| {
+            let gid = u16::try_from(gid.to_u32()).ok().filter(|gid| gids.binary_search(gid).is_ok())?;
+            Some((char::from_u32(code)?, gid))
+        };
+        let mut characters: Vec<(char, u16)> = font.charmap().unicodes().filter_map(pair).collect();
+        characters.sort_unstable();
+        characters.dedup_by_key(|(character, _)| *character);
+        Ok(characters)
+    }
+
     /// The name and the first character of each glyph.
     fn labels(&self) -> Result<impl Fn(u16) -> (Option<String>, Option<char>) + use<>, Error> {
         let mut characters = HashMap::new();
@@ -237,6 +274,16 @@ impl<'a> FontPair<'a> {
         self.check_outlines(gids)?;
         f(Sources { truth: &Hinted(&self.teacher), neural: &neural, unhinted: &Unhinted(&self.teacher) })
     }
+}
+
+/// The hinter that a neural font has learnt from: that of its certificate, or the font's own hints if it has none.
+///
+/// # Errors
+///
+/// If the table cannot be read.
+pub fn hinter_of(font: &Font) -> Result<Hinter, Error> {
+    let table = nfr::internals::table(font)?;
+    Ok(table.certificate().map_or(Hinter::Font, |certificate| Hinter::of_teacher(certificate.teacher)))
 }
 
 /// Adds to an error which of the two fonts it is about.

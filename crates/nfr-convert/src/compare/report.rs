@@ -22,6 +22,8 @@ pub struct ReportHeader {
     pub neural: String,
     /// The target of the hinted bitmaps.
     pub target: String,
+    /// What hinted them: "font" or "auto", as on the command line.
+    pub hinter: String,
     /// The sizes, as on the command line.
     pub ppem: String,
     /// The number of glyphs compared.
@@ -152,7 +154,8 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let header = &self.header;
         writeln!(f, "{} against {}", header.neural, header.original)?;
-        writeln!(f, "{}, {} ppem, target {}", glyph_count_text(header.glyphs), header.ppem, header.target)?;
+        let (glyphs, hinter) = (glyph_count_text(header.glyphs), &header.hinter);
+        writeln!(f, "{glyphs}, {} ppem, target {}, hinter {hinter}", header.ppem, header.target)?;
         writeln!(f, "{} bytes of models, {:.1} per glyph", header.table_bytes, header.bytes_per_glyph)?;
         writeln!(f, "\n{:<20}{:>9}{:>9}{:>9}{:>10}{:>10}", "", "mae", "rmse", "max", "bad16", "exact")?;
         write_pair(f, "all", &self.totals)?;
@@ -247,6 +250,7 @@ mod tests {
             original: "a.ttf".into(),
             neural: "b.ttf".into(),
             target: "smooth".into(),
+            hinter: "font".into(),
             ppem: "10,12,20,70".into(),
             glyphs: 3,
             table_bytes: 30,

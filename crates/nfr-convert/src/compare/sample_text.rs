@@ -46,3 +46,40 @@ pub fn sample_glyphs(
     }
     Ok(letters.into_iter().map(|(_, gid)| gid).collect())
 }
+
+/// The characters that a text to type into begins with: the selection's own text; without one, those of `default` that are among
+/// `characters`, which are sorted; or else the first of these.
+pub fn sample_characters(selection: &Selection, characters: &[(char, u16)], default: &str) -> String {
+    if let Some(text) = &selection.text {
+        return text.split_whitespace().collect::<Vec<_>>().join(" ");
+    }
+    let is_there = |c: &char| characters.binary_search_by_key(c, |(character, _)| *character).is_ok();
+    let text: String = default.chars().filter(|c| c.is_whitespace() || is_there(c)).collect();
+    let distinct: BTreeSet<char> = text.chars().filter(|c| !c.is_whitespace()).collect();
+    if distinct.len() >= FEWEST_LETTERS {
+        return text;
+    }
+    let visible = characters.iter().map(|(c, _)| *c).filter(|c| !c.is_whitespace() && !c.is_control());
+    visible.take(GLYPHS_IN_ORDER).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn characters(text: &str) -> Vec<(char, u16)> {
+        let mut characters: Vec<_> = text.chars().zip(1..).collect();
+        characters.sort_unstable();
+        characters
+    }
+
+    #[test]
+    fn a_text_to_begin_with_has_only_characters_that_are_there() {
+        let none = Selection::default();
+        assert_eq!(sample_characters(&none, &characters("abcdehT"), "The bad cat"), "The bad ca");
+        assert_eq!(sample_characters(&none, &characters("אבג"), "The bad cat"), "אבג");
+        assert_eq!(sample_characters(&none, &[], "The bad cat"), "");
+        let own = Selection { text: Some("My\n text".into()), ..Selection::default() };
+        assert_eq!(sample_characters(&own, &characters("abc"), "The bad cat"), "My text");
+    }
+}

@@ -16,11 +16,11 @@ pub fn has_models(font: &FontRef<'_>) -> bool {
 /// # Errors
 ///
 /// `Malformed` for bytes that are no font, for a file that was cut off, or as [`units_per_em`]; `Unsupported` for a
-/// compressed web font, `InvalidParameter` for an index that the file does not have.
+/// compressed web font, which [`unpack`](super::web_font::unpack) makes a font file of; `InvalidParameter` for an index that the file does not have.
 pub fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
     if let Some(b"wOFF" | b"wOF2") = data.get(..4) {
         return Err(Error::Unsupported(
-            "this is a compressed web font (WOFF); decompress it to a .ttf first (woff2_decompress, fonttools)"
+            "this is a compressed web font (WOFF); unpack it to a .ttf first (woff2_decompress, fonttools)"
                 .into(),
         ));
     }
@@ -95,7 +95,7 @@ mod tests {
         for data in [b"".as_slice(), b"OT", b"not a font at all", &[0; 64]] {
             assert!(refusal(data, 0).contains("pass a .ttf"), "{data:?}");
         }
-        assert!(refusal(b"wOF2 and so on", 0).contains("decompress"));
+        assert!(refusal(b"wOF2 and so on", 0).contains("unpack"));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod capacity;
 mod fidelity;
+mod hinter;
 mod quality;
 mod refinement;
 mod schedule;
@@ -14,6 +15,7 @@ use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 
 pub use capacity::{CELL_UNITS_PER_EM, Capacity};
 pub use fidelity::Fidelity;
+pub use hinter::Hinter;
 pub use quality::Quality;
 pub use refinement::Refinement;
 pub use schedule::{Backend, Schedule};
@@ -44,6 +46,8 @@ pub struct Options {
     pub ppem_step: u16,
     /// The rendering target of the hints.
     pub target: Target,
+    /// Which hints are learnt.
+    pub hinter: Hinter,
     /// Seeds whatever the training draws at random.
     pub seed: u64,
     /// Threads. The result does not depend on their number.
@@ -75,6 +79,7 @@ impl Default for Options {
             ppem: 8..=64,
             ppem_step: 1,
             target: Target::default(),
+            hinter: Hinter::default(),
             seed: 1,
             jobs: 1,
             backend: Backend::default(),

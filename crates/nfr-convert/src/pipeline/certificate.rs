@@ -9,7 +9,7 @@ use super::glyphs::Measured;
 use crate::assemble::assemble;
 use crate::compare::fonts::FontPair;
 use crate::error::Error;
-use crate::options::{Options, Shape};
+use crate::options::{Hinter, Options, Shape};
 use crate::ppem::PpemList;
 use crate::writer::write_certificate;
 
@@ -25,13 +25,14 @@ pub(super) fn certify(
     options: &Options,
 ) -> Result<(), Error> {
     let is_exact = is_exact(font, table, options)?;
+    let teacher = options.hinter.teacher(TEACHER);
     let options = arguments(options);
     let errors = Table::parse(table)?.gids().map(|gid| {
         let measured = measured.get(&gid).ok_or(Error::MissingGlyph(gid))?;
         Ok(measured.all.certified())
     });
     let errors = errors.collect::<Result<Vec<_>, Error>>()?;
-    write_certificate(table, &Certificate::new(is_exact, TEACHER, CONVERTER, &options), errors);
+    write_certificate(table, &Certificate::new(is_exact, &teacher, CONVERTER, &options), errors);
     Ok(())
 }
 
@@ -41,7 +42,7 @@ fn is_exact(font: &FontRef<'_>, table: &[u8], options: &Options) -> Result<bool,
         return Ok(false);
     }
     let (original, neural) = (font.data().as_bytes(), assemble(font, table, &BTreeSet::new())?);
-    let pair = FontPair::open(original, font.ttc_index().unwrap_or(0), &neural)?;
+    let pair = FontPair::open_taught(original, font.ttc_index().unwrap_or(0), &neural, options.hinter)?;
     let gids: Vec<u16> = Table::parse(table)?.gids().collect();
     let verification = pair.verify(["", ""], &gids, &PpemList::from(options.ppem.clone()), options.jobs)?;
     Ok(verification.failures(0).is_empty())
@@ -61,8 +62,9 @@ fn arguments(options: &Options) -> String {
     };
     let quality = options.fidelity.quality();
     format!(
-        "{sizes} --target {} --shape {shape} --quality {quality} --seed {}{}",
+        "{sizes} --target {}{} --shape {shape} --quality {quality} --seed {}{}",
         options.target.name(),
+        if options.hinter == Hinter::Auto { " --hinter auto" } else { "" },
         options.seed,
         if options.drop_outlines { " --drop-outlines" } else { "" }
     )

@@ -35,7 +35,7 @@ use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
 use outlines::Learned;
 use readable::readable;
-use warnings::{glyphs_text, warn_of_uncertain};
+use warnings::{glyphs_text, warn_of_bitmaps, warn_of_uncertain};
 
 /// Converts a font: finds or trains a model for each glyph and writes a font that carries them instead of hints.
 ///
@@ -68,7 +68,8 @@ pub fn resume(
                 .into(),
         ));
     }
-    let teacher = Teacher::new(&font, options.target)?;
+    warn_of_bitmaps(&font, progress);
+    let teacher = Teacher::with_hinter(&font, options.target, options.hinter)?;
     let header = header(&font, options)?;
     let units = teacher.units_per_em();
     let scale = header.scale(units).ok_or_else(|| {

@@ -1,5 +1,8 @@
 //! Warnings of a conversion that name glyphs.
 
+use read_fonts::FontRef;
+use read_fonts::types::Tag;
+
 use crate::compare::report::glyph_count_text;
 use crate::conversion::Progress;
 use crate::teacher::Teacher;
@@ -24,6 +27,22 @@ pub(super) fn warn_of_uncertain(teacher: &Teacher, gids: &[u16], progress: &dyn 
             "skrifa and FreeType may differ on {}: the program of a component writes what a later program reads; see \
              docs/upstream.md",
             glyphs_text(&found)
+        ));
+    }
+}
+
+/// Tables of bitmaps that a font may have beside its outlines.
+const BITMAPS: [Tag; 4] = [Tag::new(b"EBDT"), Tag::new(b"CBDT"), Tag::new(b"sbix"), Tag::new(b"bdat")];
+
+/// Warns of a font with embedded bitmaps, which stay in it.
+pub(super) fn warn_of_bitmaps(font: &FontRef<'_>, progress: &dyn Progress) {
+    let found = BITMAPS.iter().filter(|tag| font.table_data(**tag).is_some_and(|table| !table.is_empty()));
+    let found: Vec<String> = found.map(|tag| format!("'{tag}'")).collect();
+    if !found.is_empty() {
+        progress.warn(&format!(
+            "the font has embedded bitmaps ({}), which stay in it: nfr does not draw them, and programs that know no models prefer \
+             them to outlines at their sizes",
+            found.join(", ")
         ));
     }
 }

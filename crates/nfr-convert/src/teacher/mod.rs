@@ -1,7 +1,8 @@
 //! The teacher: skrifa's hinted and unhinted outlines, filled with exact area coverage by zeno.
 //!
 //! skrifa falls back silently in several places. Here the interpreter is requested explicitly, and whatever
-//! would make it do something else than run the font's own programs at the requested size is an error.
+//! would make it do something else than run the font's own programs at the requested size is an error. Fonts without programs,
+//! and others where that is asked for, are hinted by skrifa's autohinter instead ([`Hinter::Auto`]).
 //!
 //! Where skrifa's interpreter and FreeType's follow different rules, the hinted outlines are those of an equivalent copy of
 //! the font, on which skrifa gives what FreeType gives on the font itself (`equivalent`, and `docs/upstream.md`).
@@ -19,6 +20,7 @@ use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, S
 
 use crate::error::Error;
 use crate::input::ppem::MAX_TEACHER_PPEM;
+use crate::options::Hinter;
 use equivalent::Equivalent;
 use nfr::Target;
 use unhinted::{draw, glyf_of, undrawable};
@@ -32,18 +34,28 @@ pub struct Teacher {
     /// The font whose programs are run. Behind the font's own glyphs it may have more.
     hinted: Font,
     uncertain: Vec<u16>,
+    hinter: Hinter,
     raster: RasterTarget,
 }
 
 impl Teacher {
+    /// Takes the font as a teacher, with its own hints.
+    ///
+    /// # Errors
+    ///
+    /// As [`Teacher::with_hinter`].
+    pub fn new(font: &FontRef<'_>, target: Target) -> Result<Self, Error> {
+        Self::with_hinter(font, target, Hinter::Font)
+    }
+
     /// Takes the font as a teacher.
     ///
     /// # Errors
     ///
-    /// `Unsupported` for a variable font, a font without TrueType outlines, one without hint programs, or one that FreeType calls
-    /// tricky, whose outlines are only parts of glyphs before its programs put them together; `Malformed` if its size of an em is
-    /// not one that OpenType allows.
-    pub fn new(font: &FontRef<'_>, target: Target) -> Result<Self, Error> {
+    /// `Unsupported` for a variable font, a font without TrueType outlines, one without hint programs if those are to be run, or
+    /// one that FreeType calls tricky, whose outlines are only parts of glyphs before its programs put them together; `Malformed`
+    /// if its size of an em is not one that OpenType allows.
+    pub fn with_hinter(font: &FontRef<'_>, target: Target, hinter: Hinter) -> Result<Self, Error> {
         let unhinted = UnhintedOutlines::new(font)?;
         match unhinted.table() {
             Some(OutlineSource::Glyf) => {}
@@ -61,7 +73,8 @@ impl Teacher {
         }
         if font.fvar().is_ok() {
             return Err(Error::Unsupported(
-                "the font is variable; make a static instance first (fonttools varLib.instancer)".into(),
+                "the font is variable; name an instance (--instance, --axis), or make one first (fonttools varLib.instancer)"
+                    .into(),
             ));
         }
         if is_hint_reliant(font) {
@@ -71,20 +84,31 @@ impl Teacher {
                     .into(),
             ));
         }
+        let raster = raster_target(target, hinter)?;
+        if hinter == Hinter::Auto {
+            let hinted = unhinted.font().clone();
+            return Ok(Self { unhinted, hinted, uncertain: Vec::new(), hinter, raster });
+        }
         if !has_glyph_programs(font) {
             return Err(Error::Unsupported(
-                "the font's glyphs have no hint programs, so there is nothing to learn; pass a hinted font"
+                "the font's glyphs have no hint programs, so there is nothing to learn; pass a hinted font, or let skrifa's \
+                 autohinter hint it (--hinter auto)"
                     .into(),
             ));
         }
         let Equivalent { font: copy, uncertain } = Equivalent::of(font)?;
         let hinted = copy.unwrap_or_else(|| unhinted.font().clone());
-        Ok(Self { unhinted, hinted, uncertain, raster: raster_target(target)? })
+        Ok(Self { unhinted, hinted, uncertain, hinter, raster })
     }
 
     /// Font units in an em.
     pub fn units_per_em(&self) -> u16 {
         self.unhinted.units_per_em()
+    }
+
+    /// What hints its glyphs.
+    pub fn hinter(&self) -> Hinter {
+        self.hinter
     }
 
     /// The composite glyphs, ascending, that FreeType may hint otherwise: a program in them reads what another one wrote, in a
@@ -93,7 +117,7 @@ impl Teacher {
         &self.uncertain
     }
 
-    /// Sets the interpreter up for one size: runs `fpgm` and `prep`. If the font switches hinting off at this
+    /// Sets the hinter up for one size: the interpreter runs `fpgm` and `prep`. If the font switches hinting off at this
     /// size, [`TeacherAt::is_hinted`] is false, and its outlines are unhinted, as in other renderers.
     ///
     /// # Errors
@@ -101,15 +125,20 @@ impl Teacher {
     /// `Malformed` if a program fails.
     pub fn at(&self, ppem: u16) -> Result<TeacherAt, Error> {
         check_ppem(f32::from(ppem))?;
-        let scaler = interpreter(glyf_of(self.hinted.clone()), ppem, self.raster, OnHintError::Fail);
+        let source = glyf_of(self.hinted.clone());
+        let (scaler, engine) = match self.hinter {
+            Hinter::Font => (interpreter(source, ppem, self.raster, OnHintError::Fail), HintEngine::TrueType),
+            Hinter::Auto => (autohinter(source, ppem, self.raster), HintEngine::Auto),
+        };
         if let Some(e) = scaler.hinting_error() {
             return Err(Error::Malformed(format!(
                 "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"
             )));
         }
-        if scaler.hint_engine() != Some(HintEngine::TrueType) {
+        if scaler.hint_engine() != Some(engine) {
             return Err(Error::Unsupported(format!(
-                "skrifa does not run the font's hint programs at {ppem} ppem; pass a hinted TrueType font"
+                "skrifa does not hint the font as asked for ({}) at {ppem} ppem; pass a hinted TrueType font",
+                self.hinter
             )));
         }
         Ok(TeacherAt {
@@ -240,6 +269,11 @@ fn interpreter(
     ScalerFont::hinted(font, f32::from(ppem), options)
 }
 
+/// skrifa's autohinter at one size. It has no settings but the target, and reads no programs that can fail.
+fn autohinter(font: impl Into<ScalerSource>, ppem: u16, target: RasterTarget) -> ScalerFont {
+    ScalerFont::hinted(font, f32::from(ppem), HintOptions::auto().with_target(target))
+}
+
 /// Whether any glyph has a hint program. Without one no point is moved, whatever `fpgm` and `prep` do: many fonts without hints have a
 /// `prep` of seven bytes, which switches drop-out control on.
 fn has_glyph_programs(font: &FontRef<'_>) -> bool {
@@ -253,9 +287,11 @@ fn has_glyph_programs(font: &FontRef<'_>) -> bool {
     })
 }
 
-/// skrifa's name of a target.
-fn raster_target(target: Target) -> Result<RasterTarget, Error> {
+/// skrifa's name of a target. Smooth, the autohinter's "light" moves points up and down only and keeps the spacing, as the
+/// interpreter does; its "normal" fits stems to whole columns, too.
+fn raster_target(target: Target, hinter: Hinter) -> Result<RasterTarget, Error> {
     match target {
+        Target::Smooth if hinter == Hinter::Auto => Ok(RasterTarget::Light),
         Target::Smooth => Ok(RasterTarget::Normal),
         Target::Mono => Ok(RasterTarget::Mono),
         Target::Lcd => Ok(RasterTarget::Lcd),

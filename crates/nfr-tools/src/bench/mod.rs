@@ -23,6 +23,7 @@ use super::args::SelectionArgs;
 use super::failure::Failure;
 use super::files::{open_neural, read};
 use super::progress::print_line;
+use super::source::read_unpacked;
 use nfr::Font;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::ppem::PpemList;
@@ -67,7 +68,7 @@ pub struct Args {
 ///
 /// Fonts that do not belong together, a glyph without a model, or a renderer that cannot draw a glyph.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let (original, neural) = (read(&args.original)?, read(&args.neural)?);
+    let (original, neural) = (read_unpacked(&args.original)?, read(&args.neural)?);
     open_neural(&args.neural, &neural)?;
     let pair = FontPair::open(&original, args.index, &neural)?;
     let gids = glyphs(args, &pair)?;

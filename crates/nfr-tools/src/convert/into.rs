@@ -6,15 +6,16 @@ use crate::failure::Failure;
 use crate::files::{modelled, open_neural, read};
 use nfr::Target;
 use nfr_convert::combine::merge;
-use nfr_convert::compare::fonts::FontPair;
+use nfr_convert::compare::fonts::{FontPair, hinter_of};
 use nfr_convert::ppem::PpemList;
-use nfr_convert::{Conversion, Options, Shape};
+use nfr_convert::{Conversion, Hinter, Options, Shape};
 
 /// The converted font that gets more models.
 pub(super) struct Existing {
     path: PathBuf,
     data: Vec<u8>,
     pub(super) target: Target,
+    pub(super) hinter: Hinter,
     pub(super) ppem: PpemList,
     /// The glyphs that it has models of, ascending.
     gids: Vec<u16>,
@@ -35,6 +36,7 @@ impl Existing {
         Ok(Self {
             path: path.to_owned(),
             target: font.target(),
+            hinter: hinter_of(&font)?,
             ppem: PpemList::from(first..=last),
             gids,
             has_fields_only,
@@ -43,8 +45,14 @@ impl Existing {
         })
     }
 
-    /// Refuses sizes, a target or a treatment of outlines that its models do not have.
-    pub(super) fn check(&self, ppem: &PpemList, target: Target, drops_outlines: bool) -> Result<(), Failure> {
+    /// Refuses sizes, a target, a hinter or a treatment of outlines that its models do not have.
+    pub(super) fn check(
+        &self,
+        ppem: &PpemList,
+        target: Target,
+        hinter: Hinter,
+        drops_outlines: bool,
+    ) -> Result<(), Failure> {
         let path = self.path.display();
         let refuse = |what: String| Err(Failure::usage(format!("{path}: its models are {what}")));
         if *ppem != self.ppem {
@@ -52,6 +60,12 @@ impl Existing {
         }
         if target != self.target {
             return refuse(format!("for {}, and not for {target}; leave --target out", self.target));
+        }
+        if hinter != self.hinter {
+            return refuse(format!(
+                "those of --hinter {}, and not of {hinter}; leave --hinter out",
+                self.hinter
+            ));
         }
         match (self.outlines_dropped, drops_outlines) {
             (true, false) => refuse("all that it has of the glyphs; add --drop-outlines".into()),

@@ -1,12 +1,11 @@
 //! What `nfr-convert` tells of a conversion: as text, and as the file of `--report`.
 
-use std::io::{self, Write};
+use std::fmt::{self, Write};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-use crate::failure::Failure;
 use nfr_convert::compare::report::{Report, glyph_count_text};
-use nfr_convert::{Conversion, GlyphReport};
+use nfr_convert::{Conversion, GlyphReport, Hinter};
 
 /// The files and options of a conversion.
 #[derive(Debug, Serialize)]
@@ -15,9 +14,19 @@ pub(super) struct About {
     pub(super) output: String,
     /// The neural font that the models were added to.
     pub(super) into: Option<String>,
+    /// Of the font in the input.
+    pub(super) index: u32,
+    /// Where the input is a variable font, the place of its instance.
+    pub(super) instance: Option<String>,
     pub(super) target: &'static str,
+    #[serde(serialize_with = "hinter_name")]
+    pub(super) hinter: Hinter,
     pub(super) ppem: String,
     pub(super) seed: u64,
+}
+
+fn hinter_name<S: Serializer>(hinter: &Hinter, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(hinter.name())
 }
 
 /// The contents of the file of `--report`.
@@ -60,7 +69,7 @@ struct GlyphEntry {
 }
 
 /// What is told of a conversion.
-pub(super) fn summary<'r>(
+pub(super) fn report<'r>(
     about: About,
     input: &[u8],
     conversion: &'r Conversion,
@@ -98,9 +107,15 @@ pub(super) fn summary<'r>(
     }
 }
 
-/// Prints it as text. `added` glyphs were not named: layout and composites need them.
-pub(super) fn print_summary(report: &ReportFile<'_>, added: usize) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
+/// The same for people. `added` glyphs were not named: layout and composites need them.
+pub(super) fn summary_text(report: &ReportFile<'_>, added: usize) -> String {
+    let mut text = String::new();
+    // Writing to a string does not fail.
+    let _ = write_summary(&mut text, report, added);
+    text
+}
+
+fn write_summary(out: &mut String, report: &ReportFile<'_>, added: usize) -> fmt::Result {
     let unhinted = &report.comparison.totals.unhinted.figures;
     let added = match added {
         0 => String::new(),
@@ -113,13 +128,23 @@ pub(super) fn print_summary(report: &ReportFile<'_>, added: usize) -> Result<(),
     let count = glyph_count_text(report.glyphs.len());
     let into = report.about.into.as_ref().map_or(String::new(), |path| format!(" beside those of {path}"));
     writeln!(out, "{}: {count}{into} at {} ppem{composed}{added}", report.about.output, report.about.ppem)?;
+    if let Some(instance) = &report.about.instance {
+        writeln!(out, "source  the instance {instance} of a variable font")?;
+    }
+    if report.about.hinter == Hinter::Auto {
+        writeln!(out, "teacher skrifa's autohinter")?;
+    }
     writeln!(out, "table   {} bytes, {:.1} per glyph", report.table_bytes, report.bytes_per_glyph)?;
     let hints = &report.hint_bytes;
-    writeln!(
-        out,
-        "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
-        hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
-    )?;
+    if hints.total == 0 {
+        writeln!(out, "hints   none in the original")?;
+    } else {
+        writeln!(
+            out,
+            "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
+            hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
+        )?;
+    }
     let percent = 100.0 * report.output_bytes as f64 / report.input_bytes.max(1) as f64;
     writeln!(
         out,
@@ -128,6 +153,5 @@ pub(super) fn print_summary(report: &ReportFile<'_>, added: usize) -> Result<(),
     )?;
     writeln!(out, "mae     {:.5} (unhinted {:.5})", report.mae, unhinted.mae)?;
     writeln!(out, "bad16   {:.2} % (unhinted {:.2} %)", 100.0 * report.bad16, 100.0 * unhinted.bad16)?;
-    writeln!(out, "time    {:.1} s", report.seconds)?;
-    Ok(())
+    writeln!(out, "time    {:.1} s", report.seconds)
 }

@@ -131,18 +131,30 @@ pub fn sans_with(without: &[&[u8; 4]], with: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     builder.build()
 }
 
-/// A collection that holds one font (OpenType 1.9, "otff", TTC header 1.0).
+/// A collection that holds one font.
 pub fn collection(font: &[u8]) -> Vec<u8> {
-    const HEADER: u32 = 16;
+    collection_of(&[font])
+}
+
+/// A collection of fonts that share nothing (OpenType 1.9, "otff", TTC header 1.0).
+pub fn collection_of(fonts: &[&[u8]]) -> Vec<u8> {
     const DIRECTORY: usize = 12;
     const RECORD: usize = 16;
-    let mut file = [b"ttcf".as_slice(), &[0, 1, 0, 0], &1u32.to_be_bytes(), &HEADER.to_be_bytes()].concat();
-    let mut font = font.to_vec();
-    let tables = usize::from(u16::from_be_bytes([font[4], font[5]]));
-    for record in font[DIRECTORY..DIRECTORY + tables * RECORD].chunks_exact_mut(RECORD) {
-        let offset: [u8; 4] = record[8..12].try_into().unwrap();
-        record[8..12].copy_from_slice(&(u32::from_be_bytes(offset) + HEADER).to_be_bytes());
+    let mut file = [b"ttcf".as_slice(), &[0, 1, 0, 0], &(fonts.len() as u32).to_be_bytes()].concat();
+    let mut at = (file.len() + 4 * fonts.len()) as u32;
+    let mut moved = Vec::new();
+    for font in fonts {
+        file.extend(at.to_be_bytes());
+        let mut font = font.to_vec();
+        let tables = usize::from(u16::from_be_bytes([font[4], font[5]]));
+        for record in font[DIRECTORY..DIRECTORY + tables * RECORD].chunks_exact_mut(RECORD) {
+            let offset: [u8; 4] = record[8..12].try_into().unwrap();
+            record[8..12].copy_from_slice(&(u32::from_be_bytes(offset) + at).to_be_bytes());
+        }
+        font.resize(font.len().next_multiple_of(4), 0);
+        at += font.len() as u32;
+        moved.extend(font);
     }
-    file.extend(font);
+    file.extend(moved);
     file
 }

@@ -1,6 +1,8 @@
 //! A comparison as one web page that needs nothing beside itself.
 
+mod bitmaps;
 mod chart;
+mod explorer;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -13,6 +15,9 @@ use super::report::{ComparedErrors, GlyphErrors, Report, glyph_count_text};
 use super::source::BitmapSource;
 use crate::error::Error;
 use chart::{Series, line_chart};
+use explorer::explorer;
+
+pub use explorer::TextFont;
 
 /// The glyphs that are shown enlarged.
 const WORST_SHOWN: usize = 24;
@@ -37,7 +42,12 @@ pub struct SampleText<'s> {
 /// # Errors
 ///
 /// As the sources', and `LimitExceeded` for pictures that would be too large.
-pub fn page(report: &Report, sources: Sources<'_>, text: &SampleText<'_>) -> Result<String, Error> {
+pub fn page(
+    report: &Report,
+    sources: Sources<'_>,
+    text: &SampleText<'_>,
+    font: &TextFont<'_>,
+) -> Result<String, Error> {
     let header = &report.header;
     let title = format!("{} against {}", header.neural, header.original);
     let page = html! {
@@ -45,16 +55,19 @@ pub fn page(report: &Report, sources: Sources<'_>, text: &SampleText<'_>) -> Res
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
                 style { (PreEscaped(include_str!("page.css"))) }
             }
             body {
                 h1 { (title) }
                 p {
-                    (glyph_count_text(header.glyphs)) " at " (header.ppem) " ppem, hinted for " (header.target) "; "
+                    (glyph_count_text(header.glyphs)) " at " (header.ppem) " ppem, hinted for " (header.target)
+                    @if header.hinter == "auto" { " by skrifa's autohinter" } "; "
                     (header.table_bytes) " bytes of models, " (format!("{:.1}", header.bytes_per_glyph)) " per glyph."
                 }
                 (error_table(report))
+                (explorer(report, sources, font)?)
                 (error_by_size(report))
                 (worst_glyphs(report, sources)?)
                 (text_lines(sources, text)?)
@@ -70,18 +83,20 @@ fn error_table(report: &Report) -> Markup {
         report.bands.iter().map(|band| (format!("{}–{}", band.first_ppem, band.last_ppem), &band.compared));
     html! {
         h2 { "Error against the hinted bitmaps" }
-        table {
-            tr { @for name in ["ppem", "", "mae", "rmse", "max", "bad16", "exact"] { th { (name) } } }
-            @for (sizes, compared) in std::iter::once(all).chain(bands) {
-                @for (name, errors) in [("neural", &compared.neural), ("unhinted", &compared.unhinted)] {
-                    tr class=(name) {
-                        td { (sizes) }
-                        td { (name) }
-                        @for value in [errors.figures.mae, errors.figures.rmse, errors.figures.max] {
-                            td { (format!("{value:.5}")) }
-                        }
-                        @for share in [errors.figures.bad16, errors.figures.exact] {
-                            td { (format!("{:.2} %", 100.0 * share)) }
+        div.scroll {
+            table {
+                tr { @for name in ["ppem", "", "mae", "rmse", "max", "bad16", "exact"] { th { (name) } } }
+                @for (sizes, compared) in std::iter::once(all).chain(bands) {
+                    @for (name, errors) in [("neural", &compared.neural), ("unhinted", &compared.unhinted)] {
+                        tr class=(name) {
+                            td { (sizes) }
+                            td { (name) }
+                            @for value in [errors.figures.mae, errors.figures.rmse, errors.figures.max] {
+                                td { (format!("{value:.5}")) }
+                            }
+                            @for share in [errors.figures.bad16, errors.figures.exact] {
+                                td { (format!("{:.2} %", 100.0 * share)) }
+                            }
                         }
                     }
                 }
@@ -138,13 +153,14 @@ fn worst_row(glyph: &GlyphErrors, sources: Sources<'_>) -> Result<Markup, Error>
         coverage(&unhinted, &frame)?,
         difference(&truth, &neural, &frame)?,
     ];
+    let classes = ["coverage", "coverage", "coverage", "difference"];
     Ok(html! {
         tr {
             td {
                 (glyph.title()) br; (glyph.worst_ppem) " ppem" br;
                 "mae " (format!("{:.4}", glyph.compared.neural.figures.mae)) " over all sizes"
             }
-            @for picture in &pictures { td { (inline_image(picture, zoom)?) } }
+            @for (picture, class) in pictures.iter().zip(classes) { td { (inline_image(picture, class, zoom)?) } }
         }
     })
 }
@@ -159,11 +175,11 @@ fn text_lines(sources: Sources<'_>, text: &SampleText<'_>) -> Result<Markup, Err
         let lines = lines.collect::<Result<Vec<_>, Error>>()?;
         let frame = enclosing(&lines);
         for ((name, _), line) in named.iter().zip(&lines) {
-            rows.push((ppem, *name, inline_image(&coverage(line, &frame)?, TEXT_ZOOM)?));
+            rows.push((ppem, *name, inline_image(&coverage(line, &frame)?, "coverage", TEXT_ZOOM)?));
         }
     }
     Ok(html! {
-        h2 { "Text" }
+        h2 { "Text at the sizes compared" }
         div.scroll {
             table.lines {
                 @for (ppem, name, picture) in rows {
@@ -175,7 +191,9 @@ fn text_lines(sources: Sources<'_>, text: &SampleText<'_>) -> Result<Markup, Err
 }
 
 /// A picture inside the page, enlarged by the browser.
-fn inline_image(picture: &RgbImage, zoom: u32) -> Result<Markup, Error> {
+fn inline_image(picture: &RgbImage, class: &str, zoom: u32) -> Result<Markup, Error> {
     let source = format!("data:image/png;base64,{}", STANDARD.encode(png(picture)?));
-    Ok(html! { img width=(picture.width() * zoom) height=(picture.height() * zoom) alt="" src=(source); })
+    Ok(
+        html! { img class=(class) width=(picture.width() * zoom) height=(picture.height() * zoom) alt="" src=(source); },
+    )
 }
