@@ -149,6 +149,7 @@ mod tests {
             original: "a.ttf".into(),
             neural: "b.ttf".into(),
             target: "smooth".into(),
+            hinter: "font".into(),
             ppem: "12".into(),
             glyphs: 2,
             table_bytes: 1,
