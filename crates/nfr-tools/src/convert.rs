@@ -1,10 +1,13 @@
 //! `nfr-convert`: from a hinted font to a neural one.
 
+mod dry_run;
 mod into;
+mod kept;
 mod summary;
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Parser;
 
@@ -12,8 +15,12 @@ use super::args::{SelectionArgs, all_cores, jobs, shape, target};
 use super::exactness::exceptions;
 use super::failure::Failure;
 use super::files::{Output, read, same_file};
+use super::interrupt::{last_words, uninterrupted};
+use super::pace::Part;
+use super::program::help_template;
 use super::progress::{Reporter, Verbosity, print_line};
 use into::Existing;
+use kept::tell_how_to_go_on;
 use nfr::Target;
 use nfr_convert::closure::{LayoutFeatures, close};
 use nfr_convert::compare::fonts::FontPair;
@@ -31,7 +38,10 @@ use summary::{About, print_summary, summary};
 /// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
 /// programs
 #[derive(Debug, Parser)]
-#[command(name = "nfr-convert", version)]
+#[command(name = "nfr-convert", version, help_template = help_template!(
+    "nfr-convert in.ttf out.ttf --unicodes U+20-7E",
+    "nfr-convert in.ttf sizes.ttf --text 'Hello, world' --ppem 10-20 --report report.json"
+))]
 pub struct Args {
     /// A hinted TrueType font
     input: PathBuf,
@@ -100,6 +110,11 @@ pub struct Args {
     /// end.
     #[arg(long)]
     resume: bool,
+    /// Write nothing, and tell how long the conversion will take and how large the font will be
+    ///
+    /// A sample of the glyphs is converted and compared, with these options, and the rest is estimated from it.
+    #[arg(long)]
+    dry_run: bool,
     /// Write no font, and exit with 1, if any condition holds, as in 'mae>0.0001 || bad16>0.001'
     ///
     /// As for nfr diff, on the figures of all glyphs at the sizes of --ppem.
@@ -146,43 +161,55 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let Prepared { options, reporter, added } = prepared;
     let output = Output::new(&args.output)?;
     let report = args.report.as_deref().map(Output::new).transpose()?;
+    if args.dry_run {
+        drop(reporter);
+        return dry_run::run(&input, &options, &subject.ppem, existing.as_ref());
+    }
     if options.gids.is_empty() {
         let path = args.into.as_deref().unwrap_or(&args.output).display();
-        reporter.note(&format!("{path} has models of all selected glyphs already"));
+        reporter.meter.note(&format!("{path} has models of all selected glyphs already"));
         return output.write(&existing.map_or(Vec::new(), Existing::into_data));
     }
 
     let partial = output.partial();
     let partial = partial.map(|path| Partial::open(&path, &input, &options, args.resume)).transpose()?;
-    if let Some(aside) = partial.as_ref().and_then(Partial::kept_aside) {
-        reporter.note(&format!(
+    let partial = partial.map(Arc::new);
+    tell_how_to_go_on(partial.clone(), output.partial());
+    if let Some(aside) = partial.as_deref().and_then(Partial::kept_aside) {
+        reporter.meter.note(&format!(
             "the work file of another conversion to this output is kept as {}",
             aside.display()
         ));
     }
-    if let Some(found) = partial.as_ref().map(Partial::found).filter(|found| *found > 0) {
-        reporter.note(&format!("going on after {}", glyph_count_text(found)));
+    if let Some(found) = partial.as_deref().map(Partial::found).filter(|found| *found > 0) {
+        reporter.meter.note(&format!("going on after {}", glyph_count_text(found)));
     }
 
-    let converted = resume(&input, &options, &reporter, partial.as_ref());
-    let elapsed = reporter.elapsed();
-    drop(reporter);
+    let converted = resume(&input, &options, &reporter, partial.as_deref());
+    let elapsed = reporter.meter.elapsed();
     let mut conversion = match converted {
         Ok(conversion) => conversion,
         Err(e) => {
             if !e.may_pass() {
                 // What made it fail is told; that the file stays is worth no other error.
-                drop(partial.map(Partial::remove));
+                drop(partial.as_deref().map(Partial::remove));
             }
             return Err(Failure::from(e).at(args.input.display()));
         }
     };
+    // Fields are worth keeping for another try; what is kept of outlines is not.
+    let give_up = |message: String| {
+        if let Some(partial) = partial.as_deref().filter(|partial| !partial.has_fields()) {
+            drop(partial.remove());
+        }
+        Err(Failure::failed(message))
+    };
     if args.selection.strict && !conversion.left_out.is_empty() {
-        return Err(Failure::failed(format!(
+        return give_up(format!(
             "{} cannot be converted, first of them glyph {}; leave out --strict to convert the rest",
             glyph_count_text(conversion.left_out.len()),
             conversion.left_out[0]
-        )));
+        ));
     }
     if let Some(existing) = &existing {
         existing.merge(&input, &options, &mut conversion)?;
@@ -191,20 +218,19 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let names = [&args.input, &args.output].map(|path| path.display().to_string());
     let names = [names[0].as_str(), &names[1]];
     let pair = FontPair::open(&input, args.index, &conversion.font)?;
+    let pair = pair.watched_by(reporter.meter.watch(|| Part::Comparing));
     let mut gids = options.gids.clone();
     gids.retain(|gid| conversion.left_out.binary_search(gid).is_err());
     let comparison = pair.report(names, &gids, &subject.ppem, args.jobs)?;
+    drop(reporter);
     let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&comparison));
     if !failures.is_empty() {
         // Trained glyphs are kept: with another threshold --resume needs no training.
-        return Err(Failure::failed(format!("{}; no font is written", failures.join("; "))));
+        return give_up(format!("{}; no font is written", failures.join("; ")));
     }
     if options.fidelity.is_exact() && !args.quiet {
         warn_of_exceptions(&pair, names, &subject.ppem, &options)?;
     }
-    output.write(&conversion.font)?;
-    partial.map(Partial::remove).transpose()?;
-
     let about = About {
         input: args.input.display().to_string(),
         output: args.output.display().to_string(),
@@ -214,9 +240,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         seed: args.seed,
     };
     let contents = summary(about, &input, &conversion, &comparison, elapsed.as_secs_f64());
-    if let Some(file) = report {
-        let json = serde_json::to_string_pretty(&contents).map_err(|e| Failure::failed(e.to_string()))?;
-        file.write((json + "\n").as_bytes())?;
+    let json = serde_json::to_string_pretty(&contents).map_err(|e| Failure::failed(e.to_string()))?;
+    {
+        let _whole = uninterrupted();
+        output.write(&conversion.font)?;
+        partial.as_deref().map(Partial::remove).transpose()?;
+        if let Some(file) = report {
+            file.write((json + "\n").as_bytes())?;
+        }
+        let path = args.output.display().to_string();
+        last_words(move || format!("interrupted; {path} is written"));
     }
     if args.quiet { Ok(()) } else { print_summary(&contents, added) }
 }
