@@ -125,7 +125,7 @@ pub fn assemble(font: &FontRef, nfrt: &[u8], dropped: &BTreeSet<u16>) -> Result<
     }
     if size > MAX_FONT_BYTES {
         return Err(Error::LimitExceeded(format!(
-            "the font would have {size} bytes, and {MAX_FONT_BYTES} are allowed; its tables overlap or are damaged"
+            "the font would have {size} bytes, and {MAX_FONT_BYTES} are allowed; its tables overlap or are damaged; repair the font"
         )));
     }
     builder.add_raw(HEAD, head(font, stripped.long_offsets)?);

@@ -3,8 +3,34 @@
 use crate::assemble::HintBytes;
 use crate::compare::metrics::Sums;
 
+/// A stage of a conversion that takes time for each glyph.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// The glyphs are drawn once with their hints, to see which of them can be.
+    Reading,
+    /// Tracks are found for outlines.
+    Fitting,
+    /// Outline models are encoded.
+    Encoding,
+    /// Fields are trained.
+    Training,
+    /// Models are drawn and compared with the hinted glyphs.
+    Measuring,
+}
+
 /// Callbacks of a running conversion, from several threads.
 pub trait Progress: Sync {
+    /// How many glyphs each stage has to work on in this run; those that a work file holds are not among them. Called again when more
+    /// is known.
+    fn work(&self, stages: &[(Stage, usize)]) {
+        let _ = stages;
+    }
+
+    /// A stage has worked on one glyph.
+    fn worked(&self, stage: Stage) {
+        let _ = stage;
+    }
+
     /// The number of glyphs that will be ready in the end: those selected, and the parts of them that need models.
     fn planned(&self, glyphs: usize) {
         let _ = glyphs;

@@ -68,6 +68,15 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {}
 
 impl Error {
+    /// Adds the glyph and the size to an error that knows only an outline.
+    pub(crate) fn of_glyph(self, gid: u16, ppem: u16) -> Self {
+        match self {
+            Self::Malformed(what) => Self::Malformed(format!("glyph {gid} at {ppem} ppem: {what}")),
+            Self::LimitExceeded(what) => Self::LimitExceeded(format!("glyph {gid} at {ppem} ppem: {what}")),
+            other => other,
+        }
+    }
+
     /// Whether the same conversion may succeed another time: it lacked time, room or a device.
     pub fn may_pass(&self) -> bool {
         matches!(self, Self::TimeLimit | Self::Io(_) | Self::Device(_))
@@ -91,6 +100,7 @@ impl From<nfr::Error> for Error {
             Cause::MissingTable { .. } | Cause::MalformedTable { .. } => {
                 Self::Malformed(format!("{error}; get the file again"))
             }
+            Cause::UnitsPerEm(_) => Self::Malformed(format!("{error}; repair the font")),
             Cause::NotConverted => Self::Unsupported(format!("{error}; make one with nfr-convert")),
             Cause::UnknownVersion { .. } => Self::Unsupported(again()),
             Cause::Renumbered { .. } => Self::InvalidParameter(format!(

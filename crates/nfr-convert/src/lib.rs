@@ -38,7 +38,7 @@ pub mod train;
 pub mod training_samples;
 pub mod writer;
 
-pub use conversion::{Conversion, GlyphReport, Progress};
+pub use conversion::{Conversion, GlyphReport, Progress, Stage};
 pub use error::Error;
 pub use input::{closure, face_names, open, ppem, select, variable, web_font};
 pub use options::{Hinter, Options, Quality, Shape};

@@ -1,15 +1,16 @@
-//! The work file of a conversion: the glyphs that are trained already, so that an interrupted conversion can be
+//! The work file of a conversion: what is learnt already, so that an interrupted conversion can be
 //! resumed. All random numbers depend on the seed and the glyph only, so that the font comes out the same, byte for byte.
 //!
-//! The file is a heading and [records]. A record that was not written to its end is ignored.
+//! The file is a heading and [records], each of one kind of result. A record that was not written to its end is ignored.
 //!
 //! [records]: crate::records
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use crate::error::Error;
 use crate::options::Options;
@@ -18,21 +19,61 @@ use nfr::internals::model::gridfit::{Scale, Weights};
 use nfr::internals::table::{FNV_BASIS, codec, fnv1a};
 
 /// Begins the file; a key of 8 bytes follows.
-const MAGIC: &[u8; 14] = b"nfr partial 3\n";
+const MAGIC: &[u8; 14] = b"nfr partial 4\n";
 /// What the work files of all versions begin with.
 const ANY_MAGIC: &[u8] = b"nfr partial ";
+
+/// Results of outline models are written this often: they come by the hundred, and a lost second is learnt again in one.
+const WRITE_INTERVAL: Duration = Duration::from_secs(1);
+
+/// A kind of result that the file keeps for a glyph.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub(super) enum Kind {
+    /// The encoded weights of a trained field.
+    Field = 0,
+    /// The tracks of an outline, or that it cannot have any.
+    Fit = 1,
+    /// The encoded message of an outline model and its weights.
+    Encoding = 2,
+    /// The errors of a model.
+    Measurement = 3,
+}
+
+impl Kind {
+    fn of(byte: u8) -> Option<Self> {
+        [Self::Field, Self::Fit, Self::Encoding, Self::Measurement]
+            .into_iter()
+            .find(|kind| *kind as u8 == byte)
+    }
+}
 
 /// The work file.
 #[derive(Debug)]
 pub struct Partial {
     path: PathBuf,
     key: u64,
-    /// Opened by the first record if the file did not exist.
-    file: Mutex<Option<File>>,
-    /// The encoded weights of each glyph that the file held.
-    found: HashMap<u16, Vec<u8>>,
+    writer: Mutex<Writer>,
+    /// What the file held for each glyph.
+    found: HashMap<(Kind, u16), Vec<u8>>,
     /// Where the work file of another conversion was kept.
     kept_aside: Option<PathBuf>,
+}
+
+#[derive(Debug)]
+struct Writer {
+    /// Opened by the first record if the file did not exist.
+    file: Option<File>,
+    /// Records that are not written yet.
+    pending: Vec<u8>,
+    written: Instant,
+    has_fields: bool,
+}
+
+impl Writer {
+    fn new() -> Self {
+        Self { file: None, pending: Vec::new(), written: Instant::now(), has_fields: false }
+    }
 }
 
 /// A hash of everything that the models depend on: this version, the input and the options, except the number of
@@ -56,7 +97,7 @@ impl Partial {
         let mut partial = Self {
             path: path.to_owned(),
             key: key(input, options),
-            file: Mutex::default(),
+            writer: Mutex::new(Writer::new()),
             found: HashMap::new(),
             kept_aside: None,
         };
@@ -95,7 +136,7 @@ impl Partial {
                 .and_then(|()| file.seek(SeekFrom::End(0)))
                 .map_err(|e| partial.failed("write", &e))?;
         }
-        partial.file = Mutex::new(Some(file));
+        partial.writer().file = Some(file);
         Ok(partial)
     }
 
@@ -134,9 +175,14 @@ impl Partial {
         self.kept_aside.as_deref()
     }
 
-    /// The number of glyphs that the file held.
+    /// The number of glyphs of which the file held a result.
     pub fn found(&self) -> usize {
-        self.found.len()
+        self.found.keys().map(|(_, gid)| gid).collect::<HashSet<_>>().len()
+    }
+
+    /// Whether the file holds trained fields, which take long to train again.
+    pub fn has_fields(&self) -> bool {
+        self.writer().has_fields || self.found.keys().any(|(kind, _)| *kind == Kind::Field)
     }
 
     /// Deletes the file once the font is written, or if a failure would come again.
@@ -144,23 +190,34 @@ impl Partial {
     /// # Errors
     ///
     /// `Io` if that fails.
-    pub fn remove(self) -> Result<(), Error> {
-        let failed = |e: io::Error| self.failed("delete", &e);
+    pub fn remove(&self) -> Result<(), Error> {
+        let mut writer = self.writer();
+        writer.pending.clear();
         // Some systems do not delete open files.
-        let file = self.file.lock().unwrap_or_else(PoisonError::into_inner).take();
-        if file.is_none() {
+        if writer.file.take().is_none() {
             return Ok(());
         }
-        drop(file);
-        std::fs::remove_file(&self.path).map_err(failed)
+        std::fs::remove_file(&self.path).map_err(|e| self.failed("delete", &e))
     }
 
-    /// The weights of some glyphs, if all of them are there.
+    /// Writes what is ready and not yet in the file, and tells whether the file exists then. For a program that is about to end.
+    ///
+    /// # Errors
+    ///
+    /// `Io` if it cannot be written.
+    pub fn flush(&self) -> Result<bool, Error> {
+        let mut writer = self.writer();
+        self.write(&mut writer)?;
+        Ok(writer.file.is_some())
+    }
+
+    /// The weights of some fields, if all of them are there.
     pub(super) fn weights(&self, gids: &[u16], scale: Scale) -> Result<Option<Vec<Weights>>, Error> {
-        let Some(found) = gids.iter().map(|gid| self.found.get(gid)).collect::<Option<Vec<_>>>() else {
+        let found = gids.iter().map(|gid| self.kept(Kind::Field, *gid));
+        let Some(found) = found.collect::<Option<Vec<_>>>() else {
             return Ok(None);
         };
-        let decode = |(bytes, gid): (&Vec<u8>, &u16)| {
+        let decode = |(bytes, gid): (&[u8], &u16)| {
             codec::decode(bytes, scale).map_err(|damage| {
                 let damage = damage.of((*gid).into());
                 Error::Io(format!("{} is damaged ({damage}); delete it", self.path.display()))
@@ -169,27 +226,54 @@ impl Partial {
         found.into_iter().zip(gids).map(decode).collect::<Result<_, _>>().map(Some)
     }
 
-    /// Appends the weights of some glyphs and waits until they are on the disk.
+    /// Appends the weights of some fields and waits until they are on the disk.
     pub(super) fn append<'w>(
         &self,
         glyphs: impl Iterator<Item = (u16, &'w Weights)>,
         scale: Scale,
     ) -> Result<(), Error> {
-        let mut payload = Vec::new();
+        let mut payload = vec![Kind::Field as u8];
         for (gid, weights) in glyphs {
-            let bytes = codec::encode(weights, scale)?;
-            payload.extend(gid.to_be_bytes());
-            payload.extend((bytes.len() as u32).to_be_bytes());
-            payload.extend(bytes);
+            append_glyph(&mut payload, gid, &codec::encode(weights, scale)?);
         }
-        let mut record = Vec::new();
-        append_record(&mut record, &payload);
-        let mut slot = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        let file = match slot.as_mut() {
+        let mut writer = self.writer();
+        writer.has_fields = true;
+        append_record(&mut writer.pending, &payload);
+        self.write(&mut writer)
+    }
+
+    /// A result that the file held.
+    pub(super) fn kept(&self, kind: Kind, gid: u16) -> Option<&[u8]> {
+        self.found.get(&(kind, gid)).map(Vec::as_slice)
+    }
+
+    /// Keeps a result. It is in the file a second later, if others follow, or after [`Partial::flush`].
+    pub(super) fn keep(&self, kind: Kind, gid: u16, result: &[u8]) -> Result<(), Error> {
+        let mut payload = vec![kind as u8];
+        append_glyph(&mut payload, gid, result);
+        let mut writer = self.writer();
+        append_record(&mut writer.pending, &payload);
+        if writer.written.elapsed() < WRITE_INTERVAL { Ok(()) } else { self.write(&mut writer) }
+    }
+
+    fn write(&self, writer: &mut Writer) -> Result<(), Error> {
+        if writer.pending.is_empty() {
+            return Ok(());
+        }
+        let file = match writer.file.as_mut() {
             Some(file) => file,
-            None => slot.insert(self.create()?),
+            None => writer.file.insert(self.create()?),
         };
-        file.write_all(&record).and_then(|()| file.sync_data()).map_err(|e| self.failed("write", &e))
+        file.write_all(&writer.pending)
+            .and_then(|()| file.sync_data())
+            .map_err(|e| self.failed("write", &e))?;
+        writer.pending.clear();
+        writer.written = Instant::now();
+        Ok(())
+    }
+
+    fn writer(&self) -> MutexGuard<'_, Writer> {
+        self.writer.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn create(&self) -> Result<File, Error> {
@@ -208,10 +292,12 @@ impl Partial {
     fn read(&mut self, bytes: &[u8]) -> Option<usize> {
         let mut rest = bytes.strip_prefix(self.heading().as_slice())?;
         while let Some((payload, after)) = split_record(rest) {
-            let mut glyphs = payload;
-            while let Some((gid, weights, more)) = split_glyph(glyphs) {
-                self.found.insert(gid, weights.to_vec());
-                glyphs = more;
+            let kind = payload.split_first().and_then(|(kind, glyphs)| Some((Kind::of(*kind)?, glyphs)));
+            if let Some((kind, mut glyphs)) = kind {
+                while let Some((gid, result, more)) = split_glyph(glyphs) {
+                    self.found.insert((kind, gid), result.to_vec());
+                    glyphs = more;
+                }
             }
             rest = after;
         }
@@ -230,14 +316,23 @@ impl Partial {
     }
 
     fn failed(&self, to: &str, e: &io::Error) -> Error {
-        Error::Io(format!("cannot {to} {}, which keeps the glyphs that are ready ({e})", self.path.display()))
+        Error::Io(format!(
+            "cannot {to} {}, which keeps the glyphs that are ready ({e}); make room, or choose another output",
+            self.path.display()
+        ))
     }
 }
 
-/// The first glyph of a payload, its encoded weights, and the bytes after it.
+fn append_glyph(payload: &mut Vec<u8>, gid: u16, result: &[u8]) {
+    payload.extend(gid.to_be_bytes());
+    payload.extend((result.len() as u32).to_be_bytes());
+    payload.extend(result);
+}
+
+/// The first glyph of a payload, its result, and the bytes after it.
 fn split_glyph(bytes: &[u8]) -> Option<(u16, &[u8], &[u8])> {
     let (gid, rest) = bytes.split_first_chunk()?;
     let (length, rest) = rest.split_first_chunk()?;
-    let (weights, rest) = rest.split_at_checked(u32::from_be_bytes(*length) as usize)?;
-    Some((u16::from_be_bytes(*gid), weights, rest))
+    let (result, rest) = rest.split_at_checked(u32::from_be_bytes(*length) as usize)?;
+    Some((u16::from_be_bytes(*gid), result, rest))
 }

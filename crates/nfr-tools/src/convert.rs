@@ -1,9 +1,11 @@
 //! `nfr-convert`: from a hinted font to a neural one.
 
 mod arguments;
+mod dry_run;
 mod face;
 mod faces;
 mod into;
+mod kept;
 mod prepare;
 mod summary;
 

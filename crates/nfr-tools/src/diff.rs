@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read};
-use super::progress::print_line;
+use super::pace::Part;
+use super::progress::{Meter, Verbosity, print_line};
 use super::source::SourceArgs;
 use nfr_convert::Hinter;
 use nfr_convert::compare::diff::Sources;
@@ -67,6 +68,9 @@ pub struct Args {
     /// a comparison (>, >=, <, <=) and a decimal number, and is checked on the figures of all glyphs and sizes.
     #[arg(long, value_name = "EXPR")]
     fail_on: Option<FailOn>,
+    /// Print no progress
+    #[arg(long, short)]
+    quiet: bool,
 }
 
 /// Runs `nfr diff`.
@@ -87,7 +91,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let picture = args.png.as_deref().map(Output::new).transpose()?;
 
     let names = [&args.original, &args.neural].map(|path| path.display().to_string());
+    let meter = Meter::new(if args.quiet { Verbosity::Quiet } else { Verbosity::Normal });
+    meter.plan(&[Part::Comparing], gids.len());
+    let pair = pair.watched_by(meter.watch(|| Part::Comparing));
     let report = pair.report([&names[0], &names[1]], &gids, &args.ppem, args.jobs)?;
+    drop(meter);
     let as_json = serde_json::to_string_pretty(&report).map_err(|e| Failure::failed(e.to_string()))? + "\n";
     let table = if json_to_stdout { as_json.clone() } else { report.to_string() };
     io::stdout().write_all(table.as_bytes())?;
@@ -130,8 +138,12 @@ fn draw_page(
 
 /// The page's file, with its directory made.
 fn page_in(directory: &Path) -> Result<Output, Failure> {
-    fs::create_dir_all(directory)
-        .map_err(|e| Failure::failed(format!("cannot make the directory {} ({e})", directory.display())))?;
+    fs::create_dir_all(directory).map_err(|e| {
+        Failure::failed(format!(
+            "cannot make the directory {} ({e}); choose a place that you may write to",
+            directory.display()
+        ))
+    })?;
     Output::new(&directory.join("index.html"))
 }
 

@@ -67,7 +67,7 @@ impl From<io::Error> for Failure {
         match error.kind() {
             // The reader of the output, such as `head`, has closed it.
             io::ErrorKind::BrokenPipe => Self::failed(""),
-            _ => Self::failed(format!("cannot write to stdout ({error})")),
+            _ => Self::failed(format!("cannot write to stdout ({error}); make room where it leads to")),
         }
     }
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use read_fonts::FontRef;
 
 use super::failure::Failure;
+use super::interrupt::uninterrupted;
 use nfr::Font;
 use nfr_convert::open::{has_models, open};
 use nfr_convert::temporary::beside;
@@ -69,6 +70,7 @@ impl Output {
         };
         let output = Self { path, destination };
         if output.destination == Destination::Regular {
+            let _whole = uninterrupted();
             beside(&output.path).map_err(|e| unwritable(&output.path, &e))?;
         }
         Ok(output)
@@ -85,13 +87,20 @@ impl Output {
     pub(super) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         let result = match self.destination {
             Destination::Special => fs::write(&self.path, bytes),
-            Destination::Regular => beside(&self.path).and_then(|mut file| {
-                file.write_all(bytes)?;
-                file.as_file().sync_all()?;
-                file.persist(&self.path).map(drop).map_err(|e| e.error)
-            }),
+            Destination::Regular => {
+                let _whole = uninterrupted();
+                self.replace(bytes)
+            }
         };
         result.map_err(|e| unwritable(&self.path, &e))
+    }
+
+    fn replace(&self, bytes: &[u8]) -> io::Result<()> {
+        beside(&self.path).and_then(|mut file| {
+            file.write_all(bytes)?;
+            file.as_file().sync_all()?;
+            file.persist(&self.path).map(drop).map_err(|e| e.error)
+        })
     }
 }
 

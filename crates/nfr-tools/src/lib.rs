@@ -1,6 +1,6 @@
 //! The command-line tools as functions; the binaries only parse their arguments.
 //!
-//! Exit codes: 0 done, 1 failed or a threshold missed, 2 wrong usage; `nfr verify` exits with 1 for a difference only, and with 2 for
+//! Exit codes: 0 done, 1 failed or a threshold missed, 2 wrong usage, 130 interrupted; `nfr verify` exits with 1 for a difference only, and with 2 for
 //! every error. Results go to stdout, progress and messages to stderr.
 
 #![forbid(unsafe_code)]
@@ -11,9 +11,12 @@ pub mod bench;
 pub mod convert;
 pub mod diff;
 pub mod info;
+pub mod interrupt;
 #[cfg(feature = "lab")]
 pub mod lab;
+pub mod program;
 pub mod render;
+pub mod shell;
 pub mod subset;
 pub mod verify;
 
@@ -21,6 +24,7 @@ mod args;
 mod exactness;
 mod failure;
 mod files;
+mod pace;
 mod progress;
 mod source;
 #[cfg(not(all(feature = "bench", feature = "lab")))]

@@ -10,6 +10,7 @@ use std::process::Command;
 use super::args::SelectionArgs;
 use super::failure::Failure;
 use super::files::{Output, modelled, open_neural, read, same_file};
+use super::interrupt::delete_at_end;
 use super::progress::print_line;
 use nfr_convert::closure::LayoutFeatures;
 use nfr_convert::combine::compact;
@@ -73,6 +74,7 @@ fn pyftsubset(args: &Args, gids: &[u16]) -> Result<Vec<u8>, Failure> {
     let failed =
         |e: std::io::Error| Failure::failed(format!("cannot write a temporary file ({e}); make room for it"));
     let directory = tempfile::tempdir().map_err(failed)?;
+    delete_at_end(directory.path());
     let package = directory.path().join("nfr");
     std::fs::create_dir(&package).map_err(failed)?;
     for (name, content) in MODULE {

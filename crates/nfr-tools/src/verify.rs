@@ -2,13 +2,16 @@
 
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 
 use super::args::{SelectionArgs, all_cores, jobs};
 use super::failure::Failure;
 use super::files::{modelled, open_neural, read};
-use super::progress::print_line;
+use super::pace::Part;
+use super::progress::{Meter, Verbosity, print_line};
 use super::source::{Source, SourceArgs};
 use nfr_convert::compare::certificate::CertificateCheck;
 use nfr_convert::compare::fonts::FontPair;
@@ -45,6 +48,9 @@ pub struct Args {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Print no progress
+    #[arg(long, short)]
+    quiet: bool,
 }
 
 /// Runs `nfr verify`.
@@ -69,8 +75,18 @@ fn verify(args: &Args) -> Result<Vec<String>, Failure> {
     let trained = || PpemList::from(first..=last);
     let ppem = args.ppem.clone().unwrap_or_else(trained);
     let names = [&args.original, &args.neural].map(|path| path.display().to_string());
+    let meter = Meter::new(if args.quiet { Verbosity::Quiet } else { Verbosity::Normal });
+    meter.plan(&[Part::Verifying, Part::Certifying], gids.len());
+    let is_verified = Arc::new(AtomicBool::new(false));
+    let part = is_verified.clone();
+    let pair = pair.watched_by(meter.watch(move || match part.load(Ordering::Relaxed) {
+        false => Part::Verifying,
+        true => Part::Certifying,
+    }));
     let verification = pair.verify([&names[0], &names[1]], &gids, &ppem, args.jobs)?;
+    is_verified.store(true, Ordering::Relaxed);
     let certificate = pair.check_certificate(&gids, args.jobs)?;
+    drop(meter);
     let checked = Checked { verification, certificate };
     let text = if args.json {
         serde_json::to_string(&checked).map_err(|e| Failure::failed(e.to_string()))? + "\n"

@@ -225,14 +225,14 @@ fn the_work_file_of_another_conversion_is_kept_aside_and_an_empty_one_is_replace
     let directory = Directory::new();
     let output = directory.name("out.ttf");
     let args = ["--text", "i", "--ppem", "12", SANS, &output];
-    directory.write("out.ttf.partial", b"nfr partial 3\n12345678 and a record of another font");
+    directory.write("out.ttf.partial", b"nfr partial 4\n12345678 and a record of another font");
     let told = nfr_convert(&args).succeeds().stderr;
     let aside: Vec<String> =
         directory.files().into_iter().filter(|name| name.starts_with("out.ttf.partial")).collect();
     assert!(aside.len() == 1 && told.contains(&aside[0]), "{aside:?}: {told}");
     assert!(std::fs::read(directory.path(&aside[0])).unwrap().ends_with(b"another font"));
     std::fs::remove_file(directory.path(&aside[0])).unwrap();
-    directory.write("out.ttf.partial", b"nfr partial 3\n");
+    directory.write("out.ttf.partial", b"nfr partial 4\n");
     assert_eq!(nfr_convert(&[&args[..], &["--quiet"]].concat()).succeeds().stderr, "");
     assert_eq!(directory.files(), ["out.ttf"]);
 }

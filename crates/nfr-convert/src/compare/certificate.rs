@@ -91,11 +91,13 @@ impl FontPair<'_> {
         self.check_outlines(&glyphs.iter().map(|(gid, ..)| *gid).collect::<Vec<_>>())?;
         let (first, last) = self.font().ppem_range();
         let sizes = (first..=last).map(|ppem| self.teacher().at(ppem)).collect::<Result<Vec<_>, _>>()?;
+        self.watched().begin(glyphs.len());
         let measured = parallel::map(&glyphs, jobs, |(gid, _, glyph)| {
             let mut sums = Sums::default();
             for at in &sizes {
                 sums.add(&at.hinted(*gid)?.rasterize()?, &glyph.render(f32::from(at.ppem()))?);
             }
+            self.watched().done(1);
             Ok(sums.certified())
         })?;
         let pairs = glyphs.iter().zip(measured);

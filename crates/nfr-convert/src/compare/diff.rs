@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::metrics::Sums;
 use super::source::BitmapSource;
+use super::watched::Watched;
 use crate::error::Error;
 use crate::parallel;
 
@@ -128,13 +129,27 @@ pub struct Sources<'s> {
 ///
 /// The first that a source reports, in the order of sizes (largest first) and glyphs.
 pub fn compare(sources: Sources<'_>, gids: &[u16], sizes: &[u16], jobs: usize) -> Result<Tallies, Error> {
+    compare_watched(sources, gids, sizes, jobs, &Watched::default())
+}
+
+/// Compares as [`compare`] does, and tells how far it is.
+pub(super) fn compare_watched(
+    sources: Sources<'_>,
+    gids: &[u16],
+    sizes: &[u16],
+    jobs: usize,
+    watched: &Watched,
+) -> Result<Tallies, Error> {
+    watched.begin(gids.len() * sizes.len());
     // The largest sizes take longest, so they come first.
     let chunks: Vec<(u16, &[u16])> = sizes
         .iter()
         .rev()
         .flat_map(|&ppem| gids.chunks(GLYPHS_PER_CHUNK).map(move |gids| (ppem, gids)))
         .collect();
-    let tallies = parallel::map(&chunks, jobs, |&(ppem, gids)| compare_chunk(sources, gids, ppem))?;
+    let tallies = parallel::map(&chunks, jobs, |&(ppem, gids)| {
+        compare_chunk(sources, gids, ppem).inspect(|_| watched.done(gids.len()))
+    })?;
     Ok(tallies.iter().fold(Tallies::default(), |mut total, tallies| {
         total.merge(tallies);
         total

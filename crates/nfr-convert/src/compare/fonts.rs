@@ -5,11 +5,12 @@ use std::collections::HashMap;
 use read_fonts::FontRef;
 use skrifa::GlyphId;
 
-use super::diff::{Sources, compare};
+use super::diff::{Sources, compare_watched};
 use super::points::Compared;
 use super::report::{Report, ReportHeader};
 use super::source::{Hinted, Neural, Unhinted, patient};
 use super::verification::{NoPoints, NotCompared, Subject, Verification};
+use super::watched::{Watch, Watched};
 use crate::assemble::outline_hash;
 use crate::error::Error;
 use crate::open::{open, owned};
@@ -28,6 +29,7 @@ pub struct FontPair<'a> {
     neural_file: FontRef<'a>,
     font: Font,
     teacher: Teacher,
+    watched: Watched,
 }
 
 impl<'a> FontPair<'a> {
@@ -86,7 +88,17 @@ impl<'a> FontPair<'a> {
                     .into(),
             ));
         }
-        Ok(Self { original, neural_file, font, teacher })
+        Ok(Self { original, neural_file, font, teacher, watched: Watched::default() })
+    }
+
+    /// Tells how far each comparison is.
+    #[must_use]
+    pub fn watched_by(self, watch: Watch) -> Self {
+        Self { watched: Watched::by(watch), ..self }
+    }
+
+    pub(super) fn watched(&self) -> &Watched {
+        &self.watched
     }
 
     /// The neural font.
@@ -156,7 +168,7 @@ impl<'a> FontPair<'a> {
     ///
     /// # Errors
     ///
-    /// `MissingGlyph` for a glyph without a model, and as [`FontPair::check_outlines`] and [`compare`].
+    /// `MissingGlyph` for a glyph without a model, and as [`FontPair::check_outlines`] and [`compare`](super::diff::compare).
     pub fn report(
         &self,
         names: [&str; 2],
@@ -174,7 +186,9 @@ impl<'a> FontPair<'a> {
             table_bytes: self.font.table_len(),
             bytes_per_glyph: self.bytes_per_glyph(),
         };
-        let tallies = self.with_sources(gids, |sources| compare(sources, gids, ppem.sizes(), jobs))?;
+        let tallies = self.with_sources(gids, |sources| {
+            compare_watched(sources, gids, ppem.sizes(), jobs, &self.watched)
+        })?;
         Ok(Report::new(header, &tallies, self.labels()?))
     }
 
@@ -210,7 +224,10 @@ impl<'a> FontPair<'a> {
         let sizes = ppem.sizes().iter().map(|ppem| self.teacher.at(*ppem)).collect::<Result<Vec<_>, _>>()?;
         let compared =
             Compared { teacher: &self.teacher, sizes: &sizes, font: &self.font, limits: patient() };
-        let tallies = parallel::map(&glyphs, jobs, |(gid, glyph)| compared.glyph(*gid, glyph))?;
+        self.watched.begin(glyphs.len());
+        let tallies = parallel::map(&glyphs, jobs, |(gid, glyph)| {
+            compared.glyph(*gid, glyph).inspect(|_| self.watched.done(1))
+        })?;
         Ok(Verification::new(subject, &tallies, not_compared, self.labels()?))
     }
 

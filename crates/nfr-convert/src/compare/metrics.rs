@@ -76,6 +76,21 @@ impl Sums {
         self.exact += other.exact;
     }
 
+    /// The sums as bytes.
+    pub(crate) fn to_bytes(self) -> [u8; 48] {
+        let numbers = [self.pixels, self.absolute, self.squared, self.max.into(), self.bad, self.exact];
+        let mut bytes = [0; 48];
+        bytes.as_chunks_mut().0.iter_mut().zip(numbers).for_each(|(to, number)| *to = number.to_be_bytes());
+        bytes
+    }
+
+    /// The sums that [`Sums::to_bytes`] gave.
+    pub(crate) fn from_bytes(bytes: [u8; 48]) -> Self {
+        let number = |at: usize| u64::from_be_bytes(bytes.as_chunks().0[at]);
+        let [pixels, absolute, squared, max, bad, exact] = [0, 1, 2, 3, 4, 5].map(number);
+        Self { pixels, absolute, squared, max: max as u8, bad, exact }
+    }
+
     /// The largest difference of a pixel, of 255.
     pub fn max(&self) -> u8 {
         self.max

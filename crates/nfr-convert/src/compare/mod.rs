@@ -13,3 +13,6 @@ pub mod sample_text;
 pub mod source;
 pub mod threshold;
 pub mod verification;
+mod watched;
+
+pub use watched::Watch;

@@ -1,6 +1,6 @@
 //! Opening a font file. Errors say what to do about a file that does not open.
 
-use read_fonts::FontRef;
+use read_fonts::{FontRef, TableProvider};
 use skrifa::font::Font;
 
 use crate::error::Error;
@@ -37,6 +37,17 @@ pub fn open(data: &[u8], index: u32) -> Result<FontRef<'_>, Error> {
 /// `Malformed` for any other number, or if 'head' cannot be read.
 pub fn units_per_em(font: &FontRef<'_>) -> Result<u16, Error> {
     Ok(nfr::internals::head_units(font)?)
+}
+
+/// Refuses a font whose advance widths cannot be read: nothing could draw text with it.
+pub(crate) fn check_metrics(font: &FontRef<'_>) -> Result<(), Error> {
+    match font.hmtx() {
+        Ok(hmtx) if !hmtx.h_metrics().is_empty() => Ok(()),
+        Ok(_) => Err(Error::Malformed("table 'hmtx' has no advance widths; repair the font".into())),
+        Err(e) => {
+            Err(Error::Malformed(format!("table 'hmtx' or 'hhea' cannot be read ({e}); repair the font")))
+        }
+    }
 }
 
 /// A copy of the font that owns its bytes, for skrifa.

@@ -168,7 +168,11 @@ impl Selection {
         let names = match font.post() {
             Ok(post) => post.num_names(),
             Err(ReadError::TableIsMissing(_)) => 0,
-            Err(e) => return Err(Error::Malformed(format!("table 'post' cannot be read ({e})"))),
+            Err(e) => {
+                return Err(Error::Malformed(format!(
+                    "table 'post' cannot be read ({e}); select with --gids or --unicodes instead"
+                )));
+            }
         };
         if names == 0 {
             return Err(Error::InvalidParameter(
@@ -226,7 +230,9 @@ impl Characters {
 ///
 /// `Malformed` if 'maxp' cannot be read.
 pub fn glyph_count(font: &FontRef<'_>) -> Result<u32, Error> {
-    let maxp = font.maxp().map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e})")))?;
+    let maxp = font
+        .maxp()
+        .map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e}); repair the font")))?;
     Ok(maxp.num_glyphs().into())
 }
 

@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use nfr::internals::model::gridfit::Scale;
-use nfr::internals::model::outline::OutlineWeights;
 use nfr::internals::table::BigEndian;
 use nfr::internals::table::outline::{self, Known, Question, Shared, Sources};
 
 use super::fit::{FittedOutline, add_corrections, error, fit};
+use super::kept::Encoded;
 use super::samples::OutlineSamples;
 use super::sharing::{SharedTracks, tracks};
 use crate::error::Error;
@@ -26,21 +26,34 @@ pub(crate) struct EncodedOutlines {
     pub(crate) shared: [Vec<(i16, Vec<u8>)>; 2],
 }
 
-/// Encodes outlines; their moves become those that are written.
+/// Where encoded outlines are kept, by their numbers.
+pub(crate) trait Store: Sync {
+    /// One that was encoded before.
+    fn kept(&self, number: usize) -> Option<Encoded>;
+
+    /// Keeps one.
+    fn keep(&self, number: usize, encoded: &Encoded) -> Result<(), Error>;
+}
+
+/// Encodes outlines; their moves become those that are written. Of those that `store` has, samples need no hinted positions.
 pub(crate) fn encode(
     glyphs: &[(OutlineSamples, u16)],
     outlines: &mut [FittedOutline],
     scale: Scale,
     fidelity: Fidelity,
     jobs: usize,
+    store: &dyn Store,
 ) -> Result<EncodedOutlines, Error> {
     let shared = [0, 1].map(|axis| SharedTracks::find(outlines, axis, fidelity));
     let units_per_em = scale.units_per_em();
     let levels = shared.each_ref().map(|tracks| {
         tracks.0.iter().map(|track| BigEndian::from(track.level)).collect::<Vec<BigEndian<i16>>>()
     });
-    let all: Vec<(&(OutlineSamples, u16), &FittedOutline)> = glyphs.iter().zip(&*outlines).collect();
-    let encoded = parallel::map(&all, jobs, |((samples, advance), outline)| {
+    let all: Vec<_> = glyphs.iter().zip(&*outlines).enumerate().collect();
+    let encoded = parallel::map(&all, jobs, |(number, ((samples, advance), outline))| {
+        if let Some(encoded) = store.kept(*number) {
+            return Ok(encoded);
+        }
         let moves = |axis: usize, number: usize, sizes: Range<usize>| {
             Ok(shared[axis].0[number].moves[sizes].to_vec())
         };
@@ -59,14 +72,17 @@ pub(crate) fn encode(
         };
         let own = encoded(outline)?;
         if fidelity.is_exact() {
+            store.keep(*number, &own)?;
             return Ok(own);
         }
         // More tracks can take fewer bits than the corrections that they make needless.
         let exact = encoded(&fit(samples, units_per_em, Fidelity::EXACT))?;
-        let total = |(bytes, weights): &(Vec<u8>, OutlineWeights)| {
+        let total = |(bytes, weights): &Encoded| {
             error(weights, samples, units_per_em) + fidelity.error_per_bit() * 8.0 * bytes.len() as f64
         };
-        Ok(if total(&exact) < total(&own) { exact } else { own })
+        let best = if total(&exact) < total(&own) { exact } else { own };
+        store.keep(*number, &best)?;
+        Ok(best)
     })?;
     let mut messages = Vec::with_capacity(encoded.len());
     for (outline, (bytes, weights)) in outlines.iter_mut().zip(encoded) {
@@ -89,7 +105,7 @@ fn encode_glyph(
     outline: &FittedOutline,
     sources: &Sources,
     fidelity: Fidelity,
-) -> Result<(Vec<u8>, OutlineWeights), Error> {
+) -> Result<Encoded, Error> {
     let mut weights = outline.weights.clone();
     let costs = &outline.costs;
     let bytes = outline::encode(known, &mut weights, sources, &mut |question| {

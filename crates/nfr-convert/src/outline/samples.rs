@@ -52,6 +52,11 @@ impl OutlineSamples {
         Some(Self { advances: advances.collect(), points, scales, hinted })
     }
 
+    /// A glyph's points without the hinted positions, which are not needed once it is encoded.
+    pub(crate) fn of_points(points: OutlinePoints) -> Self {
+        Self { points, scales: Vec::new(), hinted: [Vec::new(), Vec::new()], advances: Vec::new() }
+    }
+
     /// The number of sizes.
     pub(crate) fn sizes(&self) -> usize {
         self.scales.len()

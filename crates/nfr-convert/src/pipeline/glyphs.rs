@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::training;
 use crate::compare::metrics::Sums;
-use crate::conversion::Progress;
+use crate::conversion::{Progress, Stage};
 use crate::error::Error;
 use crate::fit::{Parameters, initial_fit};
 use crate::options::Options;
@@ -129,6 +129,9 @@ impl GlyphTrainer<'_> {
     /// Trains all chunks, on `options.jobs` threads.
     pub(super) fn train_all(&self, gids: &[u16]) -> Result<Vec<TrainedGlyph>, Error> {
         let chunks: Vec<&[u16]> = gids.chunks(CHUNK).collect();
+        let is_new = |chunk: &&&[u16]| !matches!(self.found(chunk), Ok(Some(_)));
+        let new = chunks.iter().filter(is_new).map(|chunk| chunk.len()).sum();
+        self.stages.progress.work(&[(Stage::Training, new)]);
         chunks.iter().try_for_each(|gids| self.check_training(gids))?;
         let trained = parallel::map(&chunks, self.stages.options.jobs, |gids| self.train_chunk(gids))?;
         Ok(trained.into_iter().flatten().collect())
@@ -161,6 +164,7 @@ impl GlyphTrainer<'_> {
                 if let Some(partial) = self.partial {
                     partial.append(gids.iter().copied().zip(&weights), self.stages.scale)?;
                 }
+                gids.iter().for_each(|_| self.stages.progress.worked(Stage::Training));
                 weights
             }
         };

@@ -5,6 +5,7 @@ mod certificate;
 mod dropout;
 mod fields;
 mod glyphs;
+mod kept;
 mod outlines;
 mod readable;
 mod training;
@@ -18,18 +19,19 @@ use read_fonts::FontRef;
 use crate::assemble::{assemble, hint_bytes, outline_hash};
 use crate::compare::metrics::Sums;
 use crate::compose::Decomposition;
-use crate::conversion::{Conversion, GlyphReport, Progress};
+use crate::conversion::{Conversion, GlyphReport, Progress, Stage};
 use crate::error::Error;
-use crate::input::open::{has_models, open};
+use crate::input::open::{check_metrics, has_models, open};
 use crate::input::select::glyph_count;
 use crate::options::{CELL_UNITS_PER_EM, Options};
-use crate::partial::Partial;
+use crate::partial::{Kind, Partial};
 use crate::predict::Predictor;
 use crate::teacher::{Teacher, TeacherAt};
 use assembled::warn_of_assembled;
 use certificate::certify;
 use dropout::add_dropout;
 use glyphs::{Measured, Stages};
+use kept::Kept;
 use nfr::Target;
 use nfr::internals::model::gridfit::MAX_TRAINED_PPEM;
 use nfr::internals::table::{Header, Table};
@@ -68,13 +70,14 @@ pub fn resume(
                 .into(),
         ));
     }
+    check_metrics(&font)?;
     warn_of_bitmaps(&font, progress);
     let teacher = Teacher::with_hinter(&font, options.target, options.hinter)?;
     let header = header(&font, options)?;
     let units = teacher.units_per_em();
     let scale = header.scale(units).ok_or_else(|| {
         Error::InvalidParameter(format!(
-            "{}–{} ppem of {units} units per em; 1–{MAX_TRAINED_PPEM} and 16–16384 are allowed",
+            "{}–{} ppem of {units} units per em; 1–{MAX_TRAINED_PPEM} and 16–16384 are allowed; choose other sizes with --ppem",
             header.first_ppem, header.last_ppem
         ))
     })?;
@@ -85,6 +88,7 @@ pub fn resume(
     let between = (header.first_ppem..=header.last_ppem).filter(is_between).map(|ppem| teacher.at(ppem));
     let between = between.collect::<Result<Vec<_>, _>>()?;
     warn_of_uncertain(&teacher, &options.gids, progress);
+    announce(options, partial, progress);
     let (gids, unreadable) = readable(&[&sizes, &between], options, progress)?;
     let options = &Options { gids, ..options.clone() };
     warn_of_assembled(&teacher, options, progress)?;
@@ -134,14 +138,33 @@ pub fn resume(
     left_out.extend(unreadable);
     left_out.sort_unstable();
     let dropped = if options.drop_outlines { measured.keys().copied().collect() } else { BTreeSet::new() };
+    let converted = assemble(&font, &table, &dropped)?;
+    // Damage of other tables can keep the font from opening.
+    nfr::Font::new(converted.clone())?;
     Ok(Conversion {
-        font: assemble(&font, &table, &dropped)?,
+        font: converted,
         hint_bytes: hint_bytes(&font)?,
         glyphs: reports(&Table::parse(&table)?, &measured)?,
         sums,
         table_bytes: table.len(),
         left_out,
     })
+}
+
+/// Tells how much work there is, as far as that is known before glyphs are drawn.
+fn announce(options: &Options, partial: Option<&Partial>, progress: &dyn Progress) {
+    let lacks = |kind| Kept(partial).lacks(kind, options.gids.iter().copied());
+    let reading = (Stage::Reading, options.gids.len());
+    if options.uses_outlines() {
+        progress.work(&[
+            reading,
+            (Stage::Fitting, lacks(Kind::Fit)),
+            (Stage::Encoding, lacks(Kind::Encoding)),
+            (Stage::Measuring, lacks(Kind::Measurement)),
+        ]);
+    } else {
+        progress.work(&[reading, (Stage::Training, lacks(Kind::Field))]);
+    }
 }
 
 fn reports(table: &Table<'_>, measured: &BTreeMap<u16, Measured>) -> Result<Vec<GlyphReport>, Error> {

@@ -7,9 +7,11 @@ use read_fonts::FontRef;
 use skrifa::font::Font;
 
 use super::glyphs::{GlyphTrainer, Measured, Stages};
+use super::kept::{Kept, Messages};
 use super::training;
 use super::warnings::glyphs_text;
 use crate::compose::Decomposition;
+use crate::conversion::Stage;
 use crate::error::Error;
 use crate::input::open::owned;
 use crate::options::{Options, Shape};
@@ -17,7 +19,7 @@ use crate::outline::{
     EncodedOutlines, FittedOutline, FontGlyph, OutlineSamples, encode, fit, stored_outline,
 };
 use crate::parallel;
-use crate::partial::Partial;
+use crate::partial::{Kind, Partial};
 use crate::writer::{GlyphModel, OutlineTable, write_outlines};
 use nfr::internals::model::compose::{Composed, Part, round_to_grid};
 use nfr::internals::model::gridfit::Scale;
@@ -44,8 +46,10 @@ pub(super) fn learn(
     glyphs: &Decomposition,
 ) -> Result<Learned, Error> {
     let copy = owned(font)?;
-    let found = find(&stages, &copy, glyphs)?;
-    let mut measured = measure(&stages, &found)?;
+    let kept = Kept(partial);
+    plan(&stages, kept, glyphs);
+    let found = find(&stages, &copy, glyphs, kept)?;
+    let mut measured = measure(&stages, &found, kept)?;
     let selected = |gid: &u16| stages.options.gids.binary_search(gid).is_ok();
     let unfit: Vec<u16> = found.unfit.into_iter().filter(selected).collect();
     let has_fields = trains_fields(stages.options);
@@ -73,27 +77,68 @@ struct Found {
     unfit: Vec<u16>,
 }
 
-fn find(stages: &Stages<'_>, font: &Font, glyphs: &Decomposition) -> Result<Found, Error> {
+/// Tells how much work there is.
+fn plan(stages: &Stages<'_>, kept: Kept<'_>, glyphs: &Decomposition) {
+    let modelled = || glyphs.modelled.iter().copied();
+    let composed = || glyphs.composed.iter().map(|glyph| glyph.gid);
+    stages.progress.work(&[
+        (Stage::Fitting, kept.lacks(Kind::Fit, modelled())),
+        (Stage::Encoding, kept.lacks(Kind::Encoding, modelled())),
+        (Stage::Measuring, kept.lacks(Kind::Measurement, modelled().chain(composed()))),
+    ]);
+}
+
+/// A glyph's points with its advance width, and its tracks.
+type FittedGlyph = ((OutlineSamples, u16), FittedOutline);
+
+/// A glyph's points and its tracks; none if it cannot have any. The hinted positions are left out if the glyph is encoded already.
+fn fitted(
+    stages: &Stages<'_>,
+    font: &Font,
+    gid: u16,
+    kept: Kept<'_>,
+) -> Result<Option<FittedGlyph>, Error> {
+    let outline = match kept.fitted(gid) {
+        Some(None) => return Ok(None),
+        Some(Some(outline)) if kept.encoded(gid).is_some() => {
+            let (points, advance) = stored_outline(font, gid)?;
+            return Ok(Some(((OutlineSamples::of_points(points), advance), outline)));
+        }
+        Some(Some(outline)) => Some(outline),
+        None => None,
+    };
+    let samples = outline_samples(stages, font, gid)?;
+    if let Some(outline) = outline {
+        return Ok(samples.map(|samples| (samples, outline)));
+    }
+    let units_per_em = stages.scale.units_per_em();
+    let fit = samples.map(|samples| {
+        let outline = fit(&samples.0, units_per_em, stages.options.fidelity);
+        (samples, outline)
+    });
+    kept.keep_fitted(gid, fit.as_ref().map(|(_, outline)| outline))?;
+    stages.progress.worked(Stage::Fitting);
+    Ok(fit)
+}
+
+fn find(stages: &Stages<'_>, font: &Font, glyphs: &Decomposition, kept: Kept<'_>) -> Result<Found, Error> {
     let (scale, options) = (stages.scale, stages.options);
-    let fitted = parallel::map(&glyphs.modelled, options.jobs, |gid| {
-        let samples = outline_samples(stages, font, *gid)?;
-        Ok(samples.map(|(samples, advance)| {
-            let outline = fit(&samples, scale.units_per_em(), options.fidelity);
-            ((samples, advance), outline)
-        }))
-    })?;
+    let fitted = parallel::map(&glyphs.modelled, options.jobs, |gid| fitted(stages, font, *gid, kept))?;
     let (fit, mut unfit): (Vec<_>, Vec<_>) =
         glyphs.modelled.iter().copied().zip(fitted).partition(|(_, fitted)| fitted.is_some());
     let gids: Vec<u16> = fit.iter().map(|(gid, _)| *gid).collect();
     let (samples, mut outlines): (Vec<_>, Vec<_>) = fit.into_iter().filter_map(|(_, fitted)| fitted).unzip();
-    let encoded = encode(&samples, &mut outlines, scale, options.fidelity, options.jobs)?;
+    let messages = Messages { kept, gids: &gids, progress: stages.progress };
+    let encoded = encode(&samples, &mut outlines, scale, options.fidelity, options.jobs, &messages)?;
     let mut models = BTreeMap::new();
     for ((gid, (samples, _)), FittedOutline { weights, .. }) in gids.iter().zip(samples).zip(outlines) {
         models.insert(*gid, Arc::new(OutlineModel::new(samples.points, weights, scale, 0..scale.sizes())?));
     }
     let mut composed = Vec::new();
-    for glyph in &glyphs.composed {
-        match advances(stages, font, glyph, &models)? {
+    let all_advances =
+        parallel::map(&glyphs.composed, options.jobs, |glyph| advances(stages, font, glyph, &models))?;
+    for (glyph, advances) in glyphs.composed.iter().zip(all_advances) {
+        match advances {
             Some(advances) => composed.push((from_scaled_offsets(glyph, scale), advances)),
             None => unfit.push((glyph.gid, None)),
         }
@@ -104,7 +149,7 @@ fn find(stages: &Stages<'_>, font: &Font, glyphs: &Decomposition) -> Result<Foun
 }
 
 /// Draws all glyphs that have outline models, and compares them with the teacher.
-fn measure(stages: &Stages<'_>, found: &Found) -> Result<BTreeMap<u16, Measured>, Error> {
+fn measure(stages: &Stages<'_>, found: &Found, kept: Kept<'_>) -> Result<BTreeMap<u16, Measured>, Error> {
     let own = found.models.iter().map(|(gid, model)| Ok((*gid, vec![(model.clone(), Part::default())])));
     let placed = found.composed.iter().map(|(glyph, _)| {
         let parts = glyph.parts.iter().map(|part| {
@@ -115,7 +160,14 @@ fn measure(stages: &Stages<'_>, found: &Found) -> Result<BTreeMap<u16, Measured>
     });
     let drawn = own.chain(placed).collect::<Result<Vec<_>, Error>>()?;
     let measured = parallel::map(&drawn, stages.options.jobs, |(gid, parts)| {
-        Ok((*gid, stages.measure(&stages.samples(*gid)?, &Glyph::of_outlines(parts.clone()))?))
+        if let Some(measured) = kept.measured(*gid) {
+            stages.progress.glyph_done(*gid, measured.learnt.figures().mae);
+            return Ok((*gid, measured));
+        }
+        let measured = stages.measure(&stages.samples(*gid)?, &Glyph::of_outlines(parts.clone()))?;
+        kept.keep_measured(*gid, &measured)?;
+        stages.progress.worked(Stage::Measuring);
+        Ok((*gid, measured))
     })?;
     Ok(measured.into_iter().collect())
 }

@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::conversion::Progress;
+use crate::conversion::{Progress, Stage};
 use crate::error::Error;
 use crate::options::Options;
 use crate::parallel;
@@ -25,13 +25,19 @@ pub(super) fn readable(
         // A font may find a panic in what reads it.
         let drawn = catch_unwind(AssertUnwindSafe(|| {
             let mut sizes = sizes.iter().copied().flatten();
-            sizes.try_for_each(|at| at.hinted(*gid).and_then(|outline| outline.rasterize()).map(|_| ()))
+            sizes.try_for_each(|at| {
+                let outline = at.hinted(*gid)?;
+                outline.rasterize().map(drop).map_err(|e| e.of_glyph(*gid, at.ppem()))
+            })
         }));
+        progress.worked(Stage::Reading);
         match drawn {
             Ok(Ok(())) => Ok(None),
             Ok(Err(error @ Error::NoSuchGlyph(_))) => Err(error),
             Ok(Err(error)) => Ok(Some(error)),
-            Err(_) => Ok(Some(Error::Malformed(format!("skrifa panics on glyph {gid}")))),
+            Err(_) => Ok(Some(Error::Malformed(format!(
+                "skrifa panics on glyph {gid}; leave it out, or repair the font"
+            )))),
         }
     })?;
     let (mut good, mut bad) = (Vec::new(), Vec::new());

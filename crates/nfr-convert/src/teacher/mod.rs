@@ -14,7 +14,7 @@ pub(crate) mod unhinted;
 use std::sync::OnceLock;
 
 use read_fonts::tables::glyf::{Glyph, is_hint_reliant};
-use read_fonts::{FontRef, TableProvider};
+use read_fonts::{FontRef, ReadError, TableProvider};
 use skrifa::font::Font;
 use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, ScalerFont, ScalerSource};
 
@@ -89,7 +89,7 @@ impl Teacher {
             let hinted = unhinted.font().clone();
             return Ok(Self { unhinted, hinted, uncertain: Vec::new(), hinter, raster });
         }
-        if !has_glyph_programs(font) {
+        if !has_glyph_programs(font)? {
             return Err(Error::Unsupported(
                 "the font's glyphs have no hint programs, so there is nothing to learn; pass a hinted font, or let skrifa's \
                  autohinter hint it (--hinter auto)"
@@ -132,7 +132,7 @@ impl Teacher {
         };
         if let Some(e) = scaler.hinting_error() {
             return Err(Error::Malformed(format!(
-                "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"
+                "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e}); leave the size out, or repair the font"
             )));
         }
         if scaler.hint_engine() != Some(engine) {
@@ -240,7 +240,7 @@ fn check_ppem(ppem: f32) -> Result<(), Error> {
     if ppem > 0.0 && ppem <= f32::from(MAX_TEACHER_PPEM) {
         return Ok(());
     }
-    Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_TEACHER_PPEM}")))
+    Err(Error::InvalidParameter(format!("{ppem} ppem is outside 0–{MAX_TEACHER_PPEM}; choose other sizes")))
 }
 
 /// The treatment of a glyph whose hint program fails.
@@ -276,15 +276,20 @@ fn autohinter(font: impl Into<ScalerSource>, ppem: u16, target: RasterTarget) ->
 
 /// Whether any glyph has a hint program. Without one no point is moved, whatever `fpgm` and `prep` do: many fonts without hints have a
 /// `prep` of seven bytes, which switches drop-out control on.
-fn has_glyph_programs(font: &FontRef<'_>) -> bool {
-    let (Ok(loca), Ok(glyf), Ok(maxp)) = (font.loca(None), font.glyf(), font.maxp()) else { return false };
-    (0..u32::from(maxp.num_glyphs())).any(|glyph| match loca.get_glyf(glyph.into(), &glyf) {
+fn has_glyph_programs(font: &FontRef<'_>) -> Result<bool, Error> {
+    let unreadable = |tag: &str, e: ReadError| {
+        Error::Malformed(format!("table '{tag}' cannot be read ({e}); repair the font"))
+    };
+    let glyphs = font.maxp().map_err(|e| unreadable("maxp", e))?.num_glyphs();
+    let loca = font.loca(None).map_err(|e| unreadable("loca", e))?;
+    let glyf = font.glyf().map_err(|e| unreadable("glyf", e))?;
+    Ok((0..u32::from(glyphs)).any(|glyph| match loca.get_glyf(glyph.into(), &glyf) {
         Ok(Some(Glyph::Simple(simple))) => !simple.instructions().is_empty(),
         Ok(Some(Glyph::Composite(composite))) => {
             composite.instructions().is_some_and(|program| !program.is_empty())
         }
         _ => false,
-    })
+    }))
 }
 
 /// skrifa's name of a target. Smooth, the autohinter's "light" moves points up and down only and keeps the spacing, as the

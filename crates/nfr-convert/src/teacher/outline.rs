@@ -158,7 +158,9 @@ impl Outline {
             for axis in 0..2 {
                 let v = point[axis];
                 if !v.is_finite() {
-                    return Err(Error::Malformed(format!("an outline has the coordinate {v}")));
+                    return Err(Error::Malformed(format!(
+                        "an outline has the coordinate {v}; repair the font"
+                    )));
                 }
                 if v.abs() > MAX_REACH {
                     return Err(Error::LimitExceeded(format!(

@@ -86,5 +86,7 @@ pub(crate) fn undrawable(gid: u16, ppem: Option<f32>, error: &ScaleError) -> Err
         return Error::NoSuchGlyph(gid.into());
     }
     let size = ppem.map_or_else(|| "in font units".into(), |ppem| format!("at {ppem} ppem"));
-    Error::Malformed(format!("glyph {gid} cannot be drawn {size} ({error})"))
+    Error::Malformed(format!(
+        "glyph {gid} cannot be drawn {size} ({error}); leave it out, or repair the font"
+    ))
 }

@@ -159,7 +159,7 @@ fn put_composed(
         if glyph.parts.len() > MAX_PARTS {
             let (gid, parts) = (glyph.gid, glyph.parts.len());
             return Err(Error::LimitExceeded(format!(
-                "glyph {gid} has {parts} parts, {MAX_PARTS} are allowed"
+                "glyph {gid} has {parts} parts, {MAX_PARTS} are allowed; leave it out"
             )));
         }
         for part in &glyph.parts {

@@ -7,6 +7,7 @@ use clap::Parser;
 use crate::args::{SelectionArgs, all_cores, hinter, jobs, shape, target};
 use crate::failure::Failure;
 use crate::files::same_file;
+use crate::program::help_template;
 use crate::source::SourceArgs;
 use nfr::Target;
 use nfr_convert::closure::LayoutFeatures;
@@ -18,7 +19,10 @@ use nfr_convert::{Hinter, Options, Quality, Shape};
 /// Learns a font's hinted bitmaps, glyph by glyph, and writes a font that carries the models instead of hint
 /// programs
 #[derive(Debug, Parser)]
-#[command(name = "nfr-convert", version)]
+#[command(name = "nfr-convert", version, help_template = help_template!(
+    "nfr-convert in.ttf out.ttf --unicodes U+20-7E",
+    "nfr-convert in.ttf sizes.ttf --text 'Hello, world' --ppem 10-20 --report report.json"
+))]
 pub struct Args {
     /// A hinted TrueType font; or one without hints, with --hinter auto. Collections and web fonts (WOFF, WOFF2) are read, too
     pub(super) input: PathBuf,
@@ -95,6 +99,11 @@ pub struct Args {
     /// end.
     #[arg(long)]
     pub(super) resume: bool,
+    /// Write nothing, and tell how long the conversion will take and how large the font will be
+    ///
+    /// A sample of the glyphs is converted and compared, with these options, and the rest is estimated from it.
+    #[arg(long, conflicts_with = "all_faces")]
+    pub(super) dry_run: bool,
     /// Write no font, and exit with 1, if any condition holds, as in 'mae>0.0001 || bad16>0.001'
     ///
     /// As for nfr diff, on the figures of all glyphs at the sizes of --ppem.

@@ -1,14 +1,19 @@
 //! The conversion of one font.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::arguments::Args;
+use super::dry_run;
 use super::into::Existing;
+use super::kept::tell_how_to_go_on;
 use super::prepare::{Prepared, Subject, prepare};
 use super::summary::{About, report, summary_text};
 use crate::exactness::exceptions;
 use crate::failure::Failure;
 use crate::files::Output;
+use crate::interrupt::{last_words, uninterrupted};
+use crate::pace::Part;
 use crate::progress::{Reporter, print_line};
 use crate::source::Source;
 use nfr_convert::compare::fonts::FontPair;
@@ -25,7 +30,7 @@ pub(super) struct Converted {
     pub(super) summary: String,
 }
 
-/// Converts a font and writes it. None if it had all models already.
+/// Converts a font and writes it. None if it had all models already, or nothing was to be written.
 pub(super) fn convert(args: &Args, source: &Source, path: &Path) -> Result<Option<Converted>, Failure> {
     let input = source.data.as_slice();
     let existing = args.into.as_ref().map(|path| Existing::open(path, input, source.index)).transpose()?;
@@ -33,27 +38,41 @@ pub(super) fn convert(args: &Args, source: &Source, path: &Path) -> Result<Optio
     let prepared = prepare(args, source, &subject).map_err(|e| e.at(args.input.display()))?;
     let Prepared { options, reporter, added } = prepared;
     let output = Output::new(path)?;
+    if args.dry_run {
+        drop(reporter);
+        dry_run::run(input, &options, &subject.ppem, existing.as_ref())?;
+        return Ok(None);
+    }
     if options.gids.is_empty() {
         let path = args.into.as_deref().unwrap_or(path).display();
-        reporter.note(&format!("{path} has models of all selected glyphs already"));
+        reporter.meter.note(&format!("{path} has models of all selected glyphs already"));
         output.write(&existing.map_or(Vec::new(), Existing::into_data))?;
         return Ok(None);
     }
     let partial = work_file(args, input, &options, &output, &reporter)?;
-    let converted = resume(input, &options, &reporter, partial.as_ref());
-    let elapsed = reporter.elapsed();
-    drop(reporter);
+    tell_how_to_go_on(partial.clone(), output.partial());
+    let converted = resume(input, &options, &reporter, partial.as_deref());
+    let elapsed = reporter.meter.elapsed();
     let mut conversion = match converted {
         Ok(conversion) => conversion,
         Err(e) => {
             if !e.may_pass() {
                 // What made it fail is told; that the file stays is worth no other error.
-                drop(partial.map(Partial::remove));
+                drop(partial.as_deref().map(Partial::remove));
             }
             return Err(Failure::from(e).at(args.input.display()));
         }
     };
-    check_strict(args, &conversion)?;
+    // Fields are worth keeping for another try; what is kept of outlines is not.
+    let give_up = |failure: Failure| {
+        if let Some(partial) = partial.as_deref().filter(|partial| !partial.has_fields()) {
+            drop(partial.remove());
+        }
+        Err(failure)
+    };
+    if let Err(failure) = check_strict(args, &conversion) {
+        return give_up(failure);
+    }
     if let Some(existing) = &existing {
         existing.merge(input, &options, &mut conversion)?;
     }
@@ -61,19 +80,26 @@ pub(super) fn convert(args: &Args, source: &Source, path: &Path) -> Result<Optio
     let names = [&args.input, path].map(|path| path.display().to_string());
     let names = [names[0].as_str(), &names[1]];
     let pair = FontPair::open(input, source.index, &conversion.font)?;
+    let pair = pair.watched_by(reporter.meter.watch(|| Part::Comparing));
     let mut gids = options.gids.clone();
     gids.retain(|gid| conversion.left_out.binary_search(gid).is_err());
     let comparison = pair.report(names, &gids, &subject.ppem, args.jobs)?;
+    drop(reporter);
     let failures = args.fail_on.as_ref().map_or(Vec::new(), |conditions| conditions.failures(&comparison));
     if !failures.is_empty() {
         // Trained glyphs are kept: with another threshold --resume needs no training.
-        return Err(Failure::failed(format!("{}; no font is written", failures.join("; "))));
+        return give_up(Failure::failed(format!("{}; no font is written", failures.join("; "))));
     }
     if options.fidelity.is_exact() && !args.quiet {
         warn_of_exceptions(&pair, names, &subject.ppem, &options)?;
     }
-    output.write(&conversion.font)?;
-    partial.map(Partial::remove).transpose()?;
+    {
+        let _whole = uninterrupted();
+        output.write(&conversion.font)?;
+        partial.as_deref().map(Partial::remove).transpose()?;
+        let path = path.display().to_string();
+        last_words(move || format!("interrupted; {path} is written"));
+    }
     let about = About {
         input: args.input.display().to_string(),
         output: path.display().to_string(),
@@ -97,19 +123,19 @@ fn work_file(
     options: &Options,
     output: &Output,
     reporter: &Reporter,
-) -> Result<Option<Partial>, Failure> {
+) -> Result<Option<Arc<Partial>>, Failure> {
     let partial = output.partial();
     let partial = partial.map(|path| Partial::open(&path, input, options, args.resume)).transpose()?;
     if let Some(aside) = partial.as_ref().and_then(Partial::kept_aside) {
-        reporter.note(&format!(
+        reporter.meter.note(&format!(
             "the work file of another conversion to this output is kept as {}",
             aside.display()
         ));
     }
     if let Some(found) = partial.as_ref().map(Partial::found).filter(|found| *found > 0) {
-        reporter.note(&format!("going on after {}", glyph_count_text(found)));
+        reporter.meter.note(&format!("going on after {}", glyph_count_text(found)));
     }
-    Ok(partial)
+    Ok(partial.map(Arc::new))
 }
 
 fn check_strict(args: &Args, conversion: &Conversion) -> Result<(), Failure> {

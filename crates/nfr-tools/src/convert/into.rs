@@ -96,6 +96,11 @@ impl Existing {
         Ok(())
     }
 
+    /// The bytes of its file.
+    pub(super) fn len(&self) -> usize {
+        self.data.len()
+    }
+
     /// The font as it is, if nothing is missing.
     pub(super) fn into_data(self) -> Vec<u8> {
         self.data
