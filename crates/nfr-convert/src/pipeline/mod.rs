@@ -61,14 +61,15 @@ pub fn resume(
     partial: Option<&Partial>,
 ) -> Result<Conversion, Error> {
     options.check()?;
-    let font = open(input, options.index)?;
-    if has_models(&font) {
+    let original = open(input, options.index)?;
+    if has_models(&original) {
         return Err(Error::Unsupported(
             "the font already carries an 'Nfrt' table and has no hints left; convert the original font"
                 .into(),
         ));
     }
-    let teacher = Teacher::new(&font, options.target)?;
+    let teacher = Teacher::new(&original, options.target)?;
+    let font = teacher.true_type(&original)?;
     let header = header(&font, options)?;
     let units = teacher.units_per_em();
     let scale = header.scale(units).ok_or_else(|| {
@@ -125,7 +126,7 @@ pub fn resume(
     for gid in options.gids.iter().filter(|gid| left_out.binary_search(gid).is_err()) {
         sums.merge(&measured.get(gid).ok_or(Error::MissingGlyph(*gid))?.learnt);
     }
-    certify(&font, &mut table, &measured, options)?;
+    certify(&original, &font, &mut table, &measured, options)?;
     if options.target == Target::Mono {
         add_dropout(&mut table, &measured);
     }

@@ -8,9 +8,10 @@
 
 mod equivalent;
 mod outline;
+mod postscript;
 pub(crate) mod unhinted;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use read_fonts::tables::glyf::{Glyph, is_hint_reliant};
 use read_fonts::{FontRef, TableProvider};
@@ -18,9 +19,11 @@ use skrifa::font::Font;
 use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, ScalerFont, ScalerSource};
 
 use crate::error::Error;
+use crate::input::open::owned;
 use crate::input::ppem::MAX_TEACHER_PPEM;
 use equivalent::Equivalent;
 use nfr::Target;
+use postscript::PostScript;
 use unhinted::{draw, glyf_of, undrawable};
 
 pub use outline::Outline;
@@ -29,36 +32,44 @@ pub(crate) use unhinted::UnhintedOutlines;
 /// A hinted font as ground truth. It keeps a copy of the font, and may be used from several threads.
 pub struct Teacher {
     unhinted: UnhintedOutlines,
-    /// The font whose programs are run. Behind the font's own glyphs it may have more.
+    /// The font whose hints are run. Behind the font's own glyphs it may have more.
     hinted: Font,
+    /// The TrueType copy of a font with PostScript outlines.
+    postscript: Option<Arc<PostScript>>,
     uncertain: Vec<u16>,
     raster: RasterTarget,
 }
 
 impl Teacher {
-    /// Takes the font as a teacher.
+    /// Takes the font as a teacher. One with PostScript outlines gets a TrueType copy, whose points the outlines have then
+    /// ([`Self::true_type`]). Of a variable one, the default instance is taken.
     ///
     /// # Errors
     ///
-    /// `Unsupported` for a variable font, a font without TrueType outlines, one without hint programs, or one that FreeType calls
+    /// `Unsupported` for a variable TrueType font, a font without outlines, one without hints, or one that FreeType calls
     /// tricky, whose outlines are only parts of glyphs before its programs put them together; `Malformed` if its size of an em is
     /// not one that OpenType allows.
     pub fn new(font: &FontRef<'_>, target: Target) -> Result<Self, Error> {
         let unhinted = UnhintedOutlines::new(font)?;
         match unhinted.table() {
-            Some(OutlineSource::Glyf) => {}
-            Some(_) => {
-                return Err(Error::Unsupported(
-                    "the outlines are PostScript (CFF), not TrueType; convert them to a hinted TrueType font first"
-                        .into(),
-                ));
+            Some(OutlineSource::Glyf) => Self::of_true_type(font, unhinted, target),
+            Some(OutlineSource::Cff | OutlineSource::Cff2) => {
+                let postscript = PostScript::new(font)?;
+                Ok(Self {
+                    unhinted: UnhintedOutlines::new(&copy_of(&postscript)?)?,
+                    hinted: owned(font)?,
+                    postscript: Some(Arc::new(postscript)),
+                    uncertain: Vec::new(),
+                    raster: raster_target(target)?,
+                })
             }
-            None => {
-                return Err(Error::Unsupported(
-                    "the font has no 'glyf' outlines; pass a TrueType font".into(),
-                ));
-            }
+            _ => Err(Error::Unsupported(
+                "the font has no outlines in 'glyf', 'CFF ' or 'CFF2'; pass a hinted TrueType or OpenType font".into(),
+            )),
         }
+    }
+
+    fn of_true_type(font: &FontRef<'_>, unhinted: UnhintedOutlines, target: Target) -> Result<Self, Error> {
         if font.fvar().is_ok() {
             return Err(Error::Unsupported(
                 "the font is variable; make a static instance first (fonttools varLib.instancer)".into(),
@@ -79,7 +90,21 @@ impl Teacher {
         }
         let Equivalent { font: copy, uncertain } = Equivalent::of(font)?;
         let hinted = copy.unwrap_or_else(|| unhinted.font().clone());
-        Ok(Self { unhinted, hinted, uncertain, raster: raster_target(target)? })
+        Ok(Self { unhinted, hinted, postscript: None, uncertain, raster: raster_target(target)? })
+    }
+
+    /// The font whose outlines models move: `font`, which is the one that this teacher was made of, or its TrueType copy.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if the copy cannot be read.
+    pub fn true_type<'t>(&'t self, font: &FontRef<'t>) -> Result<FontRef<'t>, Error> {
+        self.postscript.as_ref().map_or_else(|| Ok(font.clone()), |postscript| copy_of(postscript))
+    }
+
+    /// Whether the font has PostScript outlines.
+    pub fn is_postscript(&self) -> bool {
+        self.postscript.is_some()
     }
 
     /// Font units in an em.
@@ -107,14 +132,17 @@ impl Teacher {
                 "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"
             )));
         }
-        if scaler.hint_engine() != Some(HintEngine::TrueType) {
+        let engine =
+            if self.postscript.is_some() { HintEngine::PostScript } else { HintEngine::TrueType };
+        if scaler.hint_engine() != Some(engine) {
             return Err(Error::Unsupported(format!(
-                "skrifa does not run the font's hint programs at {ppem} ppem; pass a hinted TrueType font"
+                "skrifa does not run the font's hints at {ppem} ppem; pass a hinted font"
             )));
         }
         Ok(TeacherAt {
             strict: scaler,
             lenient: OnceLock::new(),
+            postscript: self.postscript.clone(),
             glyphs: self.unhinted.font().num_glyphs(),
             ppem,
             raster: self.raster,
@@ -128,6 +156,7 @@ impl Teacher {
     /// `NoSuchGlyph` for a glyph that the font does not have, `Malformed` for one that cannot be drawn.
     pub fn unhinted(&self, gid: u16, ppem: f32) -> Result<Outline, Error> {
         check_ppem(ppem)?;
+        self.check(gid)?;
         self.unhinted.at(gid, ppem)
     }
 
@@ -137,8 +166,19 @@ impl Teacher {
     ///
     /// As `unhinted`.
     pub fn unhinted_em(&self, gid: u16) -> Result<Outline, Error> {
+        self.check(gid)?;
         self.unhinted.em(gid)
     }
+
+    /// Whether the glyph has a TrueType outline.
+    fn check(&self, gid: u16) -> Result<(), Error> {
+        self.postscript.as_ref().map_or(Ok(()), |postscript| postscript.check(gid))
+    }
+}
+
+fn copy_of(postscript: &PostScript) -> Result<FontRef<'_>, Error> {
+    FontRef::new(&postscript.true_type)
+        .map_err(|e| Error::Malformed(format!("the font has no TrueType copy that can be read ({e})")))
 }
 
 /// The teacher at one size.
@@ -146,6 +186,7 @@ pub struct TeacherAt {
     strict: ScalerFont,
     /// Created for the first glyph whose program fails, which most fonts do not have.
     lenient: OnceLock<ScalerFont>,
+    postscript: Option<Arc<PostScript>>,
     /// The number of the font's own glyphs.
     glyphs: u32,
     ppem: u16,
@@ -185,7 +226,10 @@ impl TeacherAt {
         }
         let ppem = f32::from(self.ppem);
         match draw(&self.strict, gid) {
-            Ok(outline) => Ok((outline, None)),
+            Ok(outline) => match &self.postscript {
+                Some(postscript) => Ok((postscript.hinted(gid, outline, ppem)?, None)),
+                None => Ok((outline, None)),
+            },
             Err(e @ ScaleError::Hinting(_)) => {
                 let lenient = self.lenient.get_or_init(|| {
                     interpreter(

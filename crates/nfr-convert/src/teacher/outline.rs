@@ -28,9 +28,21 @@ pub struct Outline {
     pub advance: Option<f32>,
     /// What the hints ask of a renderer in black and white.
     pub dropout: Dropout,
+    /// The path that is filled, if it is not that of `commands`: the cubic curves that quadratic ones come near to.
+    filled: Option<Vec<Command>>,
 }
 
 impl Outline {
+    /// The same outline, filled as another one.
+    pub(super) fn filled_as(self, other: &Self) -> Self {
+        Self { filled: Some(other.commands.clone()), ..self }
+    }
+
+    /// The path.
+    pub(super) fn commands(&self) -> &[Command] {
+        &self.commands
+    }
+
     /// Multiplies every coordinate by `factor`.
     pub fn scale(&mut self, factor: f32) {
         self.map(|point| point.map(|v| v * factor));
@@ -67,7 +79,7 @@ impl Outline {
                 Command::Close => Command::Close,
             })
             .collect();
-        Ok(Self { commands, points: points.to_vec(), ..self.clone() })
+        Ok(Self { commands, points: points.to_vec(), filled: None, ..self.clone() })
     }
 
     /// Whether another outline has the same contours but for its points' positions. A hint program can put a control point on the
@@ -82,7 +94,7 @@ impl Outline {
             *point = to(*point);
         }
         let moved = |p: &Vector| Vector::from(to([p.x, p.y]));
-        for command in &mut self.commands {
+        for command in self.commands.iter_mut().chain(self.filled.iter_mut().flatten()) {
             *command = match command {
                 Command::MoveTo(p) => Command::MoveTo(moved(p)),
                 Command::LineTo(p) => Command::LineTo(moved(p)),
@@ -142,7 +154,7 @@ impl Outline {
             return Ok(Bitmap::default());
         }
         self.check_box()?;
-        let mut mask = Mask::new(self.commands.as_slice());
+        let mut mask = Mask::new(self.filled.as_ref().unwrap_or(&self.commands).as_slice());
         // Without this call zeno 0.3 computes `top` from a height that it has not set yet.
         mask.origin(Origin::BottomLeft).inspect(|_, _, _| {});
         let (pixels, place) = mask.render();
