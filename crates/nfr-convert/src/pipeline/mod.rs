@@ -13,7 +13,7 @@ mod warnings;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
-use read_fonts::FontRef;
+use read_fonts::{FontRef, TableProvider};
 
 use crate::assemble::{assemble, hint_bytes, outline_hash};
 use crate::compare::metrics::Sums;
@@ -70,7 +70,10 @@ pub fn resume(
     }
     let teacher = Teacher::new(&original, options.target)?;
     let font = teacher.true_type(&original)?;
-    let header = header(&font, options)?;
+    if teacher.is_postscript() && original.fvar().is_ok() {
+        progress.warn("the font is variable; its default instance is converted");
+    }
+    let header = header(&font, &teacher, options)?;
     let units = teacher.units_per_em();
     let scale = header.scale(units).ok_or_else(|| {
         Error::InvalidParameter(format!(
@@ -184,7 +187,7 @@ fn warn_of_unhinted(sizes: &[TeacherAt], progress: &dyn Progress) -> Result<(), 
     Ok(())
 }
 
-fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
+fn header(font: &FontRef<'_>, teacher: &Teacher, options: &Options) -> Result<Header, Error> {
     let (first, last) = options.ppem.clone().into_inner();
     Ok(Header {
         target: options.target,
@@ -192,6 +195,7 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
         last_ppem: last - (last - first) % options.ppem_step,
         outline_hash: outline_hash(font)?,
         outlines_dropped: options.drop_outlines,
+        is_postscript: teacher.is_postscript(),
         seed: options.seed,
         steps: options.schedule.steps as u16,
         knots: options.capacity.knots as u8,

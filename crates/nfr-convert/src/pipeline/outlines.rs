@@ -170,7 +170,7 @@ fn outline_samples(
     gid: u16,
 ) -> Result<Option<(OutlineSamples, u16)>, Error> {
     let (points, advance) = stored_outline(font, gid)?;
-    let samples = OutlineSamples::new(&stages.samples(gid)?, points, advance, stages.scale.units_per_em());
+    let samples = OutlineSamples::new(&stages.samples(gid)?, points, advance, stages.scale);
     Ok(samples.map(|samples| (samples, advance)))
 }
 

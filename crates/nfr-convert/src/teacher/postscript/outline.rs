@@ -45,11 +45,11 @@ impl QuadraticGlyph {
         if glyph.sources.len() > usize::from(u16::MAX) || glyph.contours.len() > i16::MAX as usize {
             return Err(format!("has {} points, and 'glyf' allows {}", glyph.sources.len(), u16::MAX));
         }
-        glyph.points = glyph
-            .sources
+        let axes = [0, 1].map(|axis| glyph.whole(axis));
+        glyph.points = axes[0]
             .iter()
-            .map(|source| {
-                let [x, y] = [0, 1].map(|axis| glyph.whole(source, axis));
+            .zip(&axes[1])
+            .map(|(&x, &y)| {
                 fit(x).zip(fit(y)).map(|(x, y)| [x, y]).ok_or_else(|| {
                     format!("has a point at {x}, {y} font units, which does not fit the 16 bits of 'glyf'")
                 })
@@ -82,14 +82,21 @@ impl QuadraticGlyph {
         outline
     }
 
-    fn whole(&self, source: &Source, axis: usize) -> f64 {
-        match source {
-            Source::On(point) => f64::from(self.cubic.points[*point][axis]).round(),
+    /// One coordinate of all points, in whole font units.
+    fn whole(&self, axis: usize) -> Vec<f64> {
+        let at = |point: usize| f64::from(self.cubic.points[point][axis]);
+        let mut last = None;
+        let coordinate = |source: &Source| match source {
+            Source::On(point) => at(*point).round(),
             Source::Control { cubic, count, index } => {
-                let coordinates = cubic.map(|point| f64::from(self.cubic.points[point][axis]));
-                whole_controls(&coordinates, *count)[*index]
+                let (_, controls) = match last.take() {
+                    Some((of, controls)) if of == *cubic => last.insert((of, controls)),
+                    _ => last.insert((*cubic, whole_controls(&cubic.map(at), *count))),
+                };
+                controls[*index]
             }
-        }
+        };
+        self.sources.iter().map(coordinate).collect()
     }
 
     /// The points of a contour in the direction of TrueType, in which ink is to the right.
