@@ -33,7 +33,7 @@ use summary::{About, print_summary, summary};
 #[derive(Debug, Parser)]
 #[command(name = "nfr-convert", version)]
 pub struct Args {
-    /// A hinted TrueType font
+    /// A hinted font with TrueType or PostScript outlines
     input: PathBuf,
     /// The neural font to write
     output: PathBuf,

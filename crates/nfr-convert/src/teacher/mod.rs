@@ -132,8 +132,7 @@ impl Teacher {
                 "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e})"
             )));
         }
-        let engine =
-            if self.postscript.is_some() { HintEngine::PostScript } else { HintEngine::TrueType };
+        let engine = if self.postscript.is_some() { HintEngine::PostScript } else { HintEngine::TrueType };
         if scaler.hint_engine() != Some(engine) {
             return Err(Error::Unsupported(format!(
                 "skrifa does not run the font's hints at {ppem} ppem; pass a hinted font"

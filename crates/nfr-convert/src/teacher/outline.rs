@@ -217,7 +217,11 @@ fn chords(curve: [Vector; 4]) -> impl Iterator<Item = Vector> {
     (1..=(count as usize).min(MAX_CHORDS)).map(move |k| {
         let t = k as f32 / count.min(MAX_CHORDS as f32);
         let s = 1.0 - t;
-        if t >= 1.0 { d } else { a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t) }
+        if t >= 1.0 {
+            d
+        } else {
+            a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
+        }
     })
 }
 

@@ -115,11 +115,15 @@ pub(super) fn print_summary(report: &ReportFile<'_>, added: usize) -> Result<(),
     writeln!(out, "{}: {count}{into} at {} ppem{composed}{added}", report.about.output, report.about.ppem)?;
     writeln!(out, "table   {} bytes, {:.1} per glyph", report.table_bytes, report.bytes_per_glyph)?;
     let hints = &report.hint_bytes;
-    writeln!(
-        out,
-        "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
-        hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
-    )?;
+    if hints.total == 0 {
+        writeln!(out, "hints   PostScript hints are left out with the charstrings")?;
+    } else {
+        writeln!(
+            out,
+            "hints   {} bytes left out: {} of glyph programs, {} of fpgm, {} of prep, {} of cvt",
+            hints.total, hints.glyph_programs, hints.fpgm, hints.prep, hints.cvt
+        )?;
+    }
     let percent = 100.0 * report.output_bytes as f64 / report.input_bytes.max(1) as f64;
     writeln!(
         out,

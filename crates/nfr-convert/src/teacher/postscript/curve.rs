@@ -120,7 +120,8 @@ mod tests {
 
     #[test]
     fn whole_control_points_keep_levels_and_are_no_farther_than_rounded_ones() {
-        let squares = |cubic: &Cubic, points: &[f64]| differences(cubic, points).iter().map(|d| d * d).sum::<f64>();
+        let squares =
+            |cubic: &Cubic, points: &[f64]| differences(cubic, points).iter().map(|d| d * d).sum::<f64>();
         for axis in &QUARTER {
             let whole = whole_controls(axis, 3);
             let rounded: Vec<f64> = controls(axis, 3).iter().map(|v| v.round()).collect();

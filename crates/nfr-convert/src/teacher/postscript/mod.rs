@@ -6,8 +6,6 @@ mod curve;
 mod outline;
 mod tables;
 
-use std::borrow::Cow;
-
 use read_fonts::ps::cff::CffFontRef;
 use read_fonts::ps::charstring::CommandSink;
 use read_fonts::types::{Fixed, GlyphId, Tag};
@@ -44,13 +42,13 @@ impl PostScript {
         }
         let unhinted = UnhintedOutlines::new(font)?;
         let units_per_em = unhinted.units_per_em();
-        let count = font.maxp().map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e})")))?;
+        let count =
+            font.maxp().map_err(|e| Error::Malformed(format!("table 'maxp' cannot be read ({e})")))?;
         let glyphs: Vec<_> = (0..count.num_glyphs())
             .map(|gid| {
                 let cubic = unhinted.units(gid)?;
-                QuadraticGlyph::new(cubic, units_per_em).map_err(|what| {
-                    Error::Unsupported(format!("glyph {gid} {what}; leave the glyph out"))
-                })
+                QuadraticGlyph::new(cubic, units_per_em)
+                    .map_err(|what| Error::Unsupported(format!("glyph {gid} {what}; leave the glyph out")))
             })
             .collect();
         let blank = QuadraticGlyph::default();
@@ -91,16 +89,16 @@ impl PostScript {
 }
 
 /// The outlines' table, if they are PostScript ones.
-pub(super) fn outline_table<'a>(font: &FontRef<'a>) -> Option<Cow<'a, [u8]>> {
+fn outline_table<'a>(font: &FontRef<'a>) -> Option<&'a [u8]> {
     let table = |tag| font.table_data(Tag::new(tag));
-    table(b"CFF2").or_else(|| table(b"CFF ")).map(|data| Cow::Borrowed(data.as_bytes()))
+    table(b"CFF2").or_else(|| table(b"CFF ")).map(|data| data.as_bytes())
 }
 
 /// Whether any glyph has a horizontal stem hint. Without one no point is moved.
 fn has_stem_hints(font: &FontRef<'_>) -> bool {
     let Some(data) = outline_table(font) else { return false };
     let units = font.head().map_or(1000, |head| head.units_per_em());
-    let Ok(cff) = CffFontRef::new(&data, 0, Some(units.into())) else { return false };
+    let Ok(cff) = CffFontRef::new(data, 0, Some(units.into())) else { return false };
     (0..cff.num_glyphs()).map(GlyphId::new).any(|gid| {
         let mut stems = Stems(false);
         let subfont = cff.subfont_index(gid).and_then(|index| cff.subfont(index, &[]).ok());

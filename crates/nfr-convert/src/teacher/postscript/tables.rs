@@ -4,7 +4,7 @@ use read_fonts::types::Tag;
 use read_fonts::{FontRef, TableProvider};
 use write_fonts::FontBuilder;
 use write_fonts::dump_table;
-use write_fonts::tables::glyf::{Bbox, Contour, Glyph, GlyfLocaBuilder, SimpleGlyph};
+use write_fonts::tables::glyf::{Bbox, Contour, GlyfLocaBuilder, Glyph, SimpleGlyph};
 use write_fonts::tables::loca::LocaFormat;
 use write_fonts::tables::maxp::Maxp;
 use write_fonts::tables::post::Post;
@@ -44,7 +44,9 @@ pub(super) fn true_type(font: &FontRef<'_>, glyphs: &[&QuadraticGlyph]) -> Resul
 }
 
 fn unwritable(table: &str, error: impl std::fmt::Display) -> Error {
-    Error::LimitExceeded(format!("the glyphs do not fit table '{table}' ({error}); leave some out of the font"))
+    Error::LimitExceeded(format!(
+        "the glyphs do not fit table '{table}' ({error}); leave some out of the font"
+    ))
 }
 
 fn unreadable(table: &str, error: impl std::fmt::Display) -> Error {
@@ -54,7 +56,8 @@ fn unreadable(table: &str, error: impl std::fmt::Display) -> Error {
 fn simple_glyph(glyph: &QuadraticGlyph) -> SimpleGlyph {
     use read_fonts::tables::glyf::CurvePoint;
     let contour = |range: &std::ops::Range<usize>| {
-        let point = |at: usize| CurvePoint::new(glyph.points[at][0], glyph.points[at][1], glyph.is_on_curve(at));
+        let point =
+            |at: usize| CurvePoint::new(glyph.points[at][0], glyph.points[at][1], glyph.is_on_curve(at));
         Contour::from(range.clone().map(point).collect::<Vec<_>>())
     };
     let mut simple =
