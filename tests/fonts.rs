@@ -22,7 +22,7 @@ fn the_table_of_fonts_names_every_font_with_its_hash_and_a_licence_that_is_there
     let there: BTreeSet<_> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name.ends_with(".ttf"))
+        .filter(|name| name.ends_with(".ttf") || name.ends_with(".otf"))
         .collect();
     assert_eq!(described, there, "fonts/README.md (left) and the folder (right) disagree");
 }

@@ -10,6 +10,7 @@ pub struct Scale {
     first_ppem: u16,
     last_ppem: u16,
     whole_sizes: bool,
+    is_postscript: bool,
 }
 
 impl Scale {
@@ -19,7 +20,7 @@ impl Scale {
         let units_fit = units_per_em >= 16 && units_per_em <= 16384;
         let sizes_fit = first_ppem >= 1 && first_ppem <= last_ppem && last_ppem <= MAX_TRAINED_PPEM;
         if units_fit && sizes_fit {
-            Some(Self { units_per_em, first_ppem, last_ppem, whole_sizes: false })
+            Some(Self { units_per_em, first_ppem, last_ppem, whole_sizes: false, is_postscript: false })
         } else {
             None
         }
@@ -30,6 +31,18 @@ impl Scale {
     #[must_use]
     pub const fn with_whole_sizes(self, whole_sizes: bool) -> Self {
         Self { whole_sizes, ..self }
+    }
+
+    /// The same for hints of PostScript outlines: coordinates are rounded down where hinting leaves them alone, and curves become
+    /// shorter lines.
+    #[must_use]
+    pub const fn with_postscript(self, is_postscript: bool) -> Self {
+        Self { is_postscript, ..self }
+    }
+
+    /// Whether the hints were those of PostScript outlines.
+    pub fn is_postscript(&self) -> bool {
+        self.is_postscript
     }
 
     /// Font units in an em.

@@ -8,7 +8,10 @@ use crate::model::outline::OutlinePoints;
 use crate::number::{UNIT, UNIT_BITS};
 
 /// A curve is split until its second difference is at most this many units along both axes.
-const FLAT: i32 = UNIT / 4;
+pub(super) const FLAT: i32 = UNIT / 4;
+/// The same for outlines that had cubic curves: their quadratic curves are shorter, and what they are compared with is not split
+/// where these are.
+pub(super) const FINE: i32 = UNIT / 64;
 /// The most vertices of a glyph.
 const MAX_VERTICES: usize = 1 << 18;
 /// Units in 1/64 pixel, as a shift.
@@ -23,6 +26,8 @@ pub(super) struct Polygons {
     pub(super) ends: Vec<usize>,
     /// The least and the greatest coordinates along x and y, once they are [measured](Self::measure).
     pub(super) bounds: [[i32; 2]; 2],
+    /// The largest second difference of a curve that is added as a line.
+    flat: i32,
 }
 
 type Point = [i32; 2];
@@ -65,7 +70,9 @@ impl Polygons {
         places: &[Vec<i32>; 2],
         offset: Point,
         stretch: Point,
+        flat: i32,
     ) {
+        self.flat = flat;
         for contour in outline.contours().filter(|contour| contour.len() > 2) {
             self.add_contour(outline, places, contour, offset, stretch);
         }
@@ -135,7 +142,7 @@ impl Polygons {
         if self.are_too_many() {
             bend = 0;
         }
-        while bend > FLAT {
+        while bend > self.flat {
             bend >>= 2;
             depth += 1;
         }

@@ -10,7 +10,7 @@ use read_fonts::types::{GlyphId, Point};
 
 use super::area::Area;
 
-use super::flatten::Polygons;
+use super::flatten::{FINE, FLAT, Polygons};
 use super::font::Font;
 use super::scratch::Scratch;
 use super::strips::{STRIP, in_strips};
@@ -112,7 +112,8 @@ pub(super) fn flatten<'m>(
     for (model, offset) in models {
         hint(model, size, points);
         check_reach(points, offset)?;
-        polygons.add(&model.points, points, offset, stretch);
+        let is_fine = size.strength > 0.0 && model.scale.is_postscript();
+        polygons.add(&model.points, points, offset, stretch, if is_fine { FINE } else { FLAT });
         if polygons.are_too_many() {
             budget.spend(u64::MAX)?;
         }

@@ -28,6 +28,8 @@ pub const OUTLINE_MODELS: u8 = 4;
 pub const CERTIFICATE: u8 = 8;
 /// The flag that says that the modes of drop-out control follow the certificate.
 pub const DROPOUT: u8 = 16;
+/// The flag that says that the hints were those of PostScript outlines.
+pub const POSTSCRIPT: u8 = 32;
 /// The most parts of a composed glyph.
 pub const MAX_PARTS: usize = 16;
 /// The most bytes that the grid offsets of parts take, decoded.
@@ -46,6 +48,9 @@ pub struct Header {
     pub outline_hash: u64,
     /// Whether the font has no outlines of the glyphs that it has models for.
     pub outlines_dropped: bool,
+    /// Whether the hints were those of PostScript outlines: at hinted sizes, coordinates that they leave alone are rounded down, and
+    /// curves become shorter lines.
+    pub is_postscript: bool,
     /// The seed of the training.
     pub seed: u64,
     /// Optimiser steps.
@@ -72,7 +77,8 @@ impl Header {
 
     /// The trained sizes as models know them; `None` for units or sizes that the format does not allow.
     pub fn scale(&self, units_per_em: u16) -> Option<Scale> {
-        Scale::new(units_per_em, self.first_ppem, self.last_ppem)
+        let scale = Scale::new(units_per_em, self.first_ppem, self.last_ppem)?;
+        Some(scale.with_postscript(self.is_postscript))
     }
 }
 

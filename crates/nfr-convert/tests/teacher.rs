@@ -113,26 +113,9 @@ fn a_font_without_hint_programs_is_refused() {
 }
 
 #[test]
-fn a_font_with_postscript_outlines_is_refused() {
-    // Adobe TN 5176: header; Name INDEX; Top DICT INDEX with CharStrings (17) at byte 32; no strings, no
-    // subroutines; CharStrings INDEX with one glyph, which is `endchar`.
-    let cff = [
-        &[1, 0, 4, 1][..],
-        &[0, 1, 1, 1, 2, b'A'],
-        &[0, 1, 1, 1, 7, 29, 0, 0, 0, 25, 17],
-        &[0, 0],
-        &[0, 0],
-        &[0, 1, 1, 1, 2, 14],
-    ]
-    .concat();
-    let error = refusal(&altered(&[(b"CFF ", cff)], &[b"glyf", b"loca"]));
-    assert!(matches!(&error, Error::Unsupported(text) if text.contains("PostScript")), "{error}");
-}
-
-#[test]
 fn a_font_without_outlines_is_refused() {
     let error = refusal(&altered(&[], &[b"glyf", b"loca"]));
-    assert!(matches!(&error, Error::Unsupported(text) if text.contains("no 'glyf'")), "{error}");
+    assert!(matches!(&error, Error::Unsupported(text) if text.contains("no outlines")), "{error}");
 }
 
 #[test]

@@ -64,6 +64,7 @@ pub fn with_networks(
         last_ppem,
         outline_hash: outline_hash(&font)?,
         outlines_dropped: false,
+        is_postscript: false,
         glyph_count: glyph_count(&font)?.try_into().unwrap_or(0),
         ..*about
     };

@@ -31,6 +31,7 @@ const ABOUT: Header = Header {
     last_ppem: 64,
     outline_hash: 0,
     outlines_dropped: false,
+    is_postscript: false,
     seed: 9,
     steps: 700,
     knots: 0,

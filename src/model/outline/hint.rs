@@ -21,16 +21,27 @@ pub fn hint(model: &OutlineModel, size: &HintedSize, points: &mut [Vec<i32>; 2])
         // An axis that hinting does not touch follows the size itself.
         let moves_axis = is_hinted && (axis == 1 || hints.is_hinted);
         let scale = scale_of(if moves_axis { size.trained_ppem } else { size.ppem }, units);
-        scaled(&model.points.coordinates[axis], scale, out);
+        let units = &model.points.coordinates[axis];
+        if is_hinted && !hints.is_hinted && model.scale.is_postscript() {
+            scaled(units, out, |v| rounded_down(v, scale));
+        } else {
+            scaled(units, out, |v| mul_fixed(v.into(), scale));
+        }
         if moves_axis {
             move_points(&model.points, axis, hints, size.index, out);
         }
     }
 }
 
-fn scaled(coordinates: &[i16], scale: i32, out: &mut Vec<i32>) {
+fn scaled(coordinates: &[i16], out: &mut Vec<i32>, to: impl Fn(i16) -> i32) {
     out.clear();
-    out.extend(coordinates.iter().map(|v| mul_fixed((*v).into(), scale)));
+    out.extend(coordinates.iter().map(|v| to(*v)));
+}
+
+/// A coordinate in 1/64 pixel, rounded down as FreeType does it where it hints PostScript outlines: the scale becomes one of whole
+/// pixels first (`cf2_getScaleAndHintFlag` and `cf2_builder_lineTo`).
+pub fn rounded_down(units: i16, scale: i32) -> i32 {
+    ((i64::from(units) * ((i64::from(scale) + 32) / 64)) >> 10) as i32
 }
 
 /// Moves the points of tracks, interpolates the others, and corrects some.

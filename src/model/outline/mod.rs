@@ -6,6 +6,6 @@ mod hint;
 mod points;
 mod weights;
 
-pub use hint::{hint, interpolated, move_contour, scale_of};
+pub use hint::{hint, interpolated, move_contour, rounded_down, scale_of};
 pub use points::OutlinePoints;
 pub use weights::{AxisHints, Correction, MAX_TRACKS, OutlineModel, OutlineWeights, UNTOUCHED};

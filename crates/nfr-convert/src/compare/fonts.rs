@@ -81,7 +81,9 @@ impl<'a> FontPair<'a> {
         let original = open(original, index).map_err(|e| about("the original font", e))?;
         let teacher = Teacher::with_hinter(&original, font.target(), hinter)
             .map_err(|e| about("the original font", e))?;
-        if font.outlines_dropped() && outline_hash(&original)? != nfr::internals::header(&font).outline_hash {
+        if font.outlines_dropped()
+            && outline_hash(&teacher.true_type(&original)?)? != nfr::internals::header(&font).outline_hash
+        {
             return Err(Error::InvalidParameter(
                 "the outlines of the original font are not those that the models were trained from; pass the \
                  font that the neural one was converted from"

@@ -71,13 +71,7 @@ fn fit_axis(
     distortion: &Distortion<'_>,
     fidelity: Fidelity,
 ) -> AxisHints {
-    let still = (0..samples.sizes()).all(|size| {
-        samples
-            .plain(axis, size)
-            .zip(samples.hinted_at(axis, size))
-            .all(|(a, b)| a.abs_diff(*b) <= fidelity.tolerance() as u32 / 2)
-    });
-    if still {
+    if samples.is_still(axis, fidelity) {
         return AxisHints::default();
     }
     let clusters = clusters(samples, axis, distortion, fidelity.tolerance());

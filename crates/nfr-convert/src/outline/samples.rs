@@ -1,9 +1,14 @@
 //! What hinting does to the points of `glyf`.
 
+use crate::options::Fidelity;
 use crate::path_points::places;
 use crate::training_samples::GlyphSamples;
-use nfr::internals::model::outline::{OutlinePoints, scale_of};
+use nfr::internals::model::gridfit::Scale;
+use nfr::internals::model::outline::{OutlinePoints, rounded_down, scale_of};
 use nfr::internals::mul_fixed;
+
+/// How far in font units the control points of PostScript outlines are from where they would be without rounding, at most.
+const CONTROL_UNITS: i32 = 2;
 
 /// A glyph's points, and where hinting puts them at each size.
 #[derive(Debug, Clone)]
@@ -15,6 +20,8 @@ pub(crate) struct OutlineSamples {
     pub(crate) hinted: [Vec<i32>; 2],
     /// The hinted advance width at each size, in whole pixels less the scaled one, rounded.
     pub(crate) advances: Vec<i8>,
+    /// Whether the hints are those of PostScript outlines.
+    is_postscript: bool,
 }
 
 impl OutlineSamples {
@@ -24,7 +31,7 @@ impl OutlineSamples {
         samples: &GlyphSamples,
         points: OutlinePoints,
         advance: u16,
-        units_per_em: u16,
+        scale: Scale,
     ) -> Option<Self> {
         if samples.contours_change {
             return None;
@@ -32,7 +39,7 @@ impl OutlineSamples {
         let contours: Vec<_> = points.contours().collect();
         let places = places(&points.on_curve, &contours, samples.outline.points.len())?;
         let scales: Vec<i32> =
-            samples.sizes.iter().map(|size| scale_of(size.ppem.into(), units_per_em)).collect();
+            samples.sizes.iter().map(|size| scale_of(size.ppem.into(), scale.units_per_em())).collect();
         let mut hinted = [Vec::new(), Vec::new()];
         for (size, scale) in samples.sizes.iter().zip(&scales) {
             for (axis, hinted) in hinted.iter_mut().enumerate() {
@@ -49,12 +56,15 @@ impl OutlineSamples {
             let rounded = (mul_fixed(advance.into(), *scale) + 32) >> 6;
             size.advance.map_or(0, |hinted| (hinted - rounded).clamp(i8::MIN.into(), i8::MAX.into()) as i8)
         });
-        Some(Self { advances: advances.collect(), points, scales, hinted })
+        let is_postscript = scale.is_postscript();
+        Some(Self { advances: advances.collect(), points, scales, hinted, is_postscript })
     }
 
     /// A glyph's points without the hinted positions, which are not needed once it is encoded.
-    pub(crate) fn of_points(points: OutlinePoints) -> Self {
-        Self { points, scales: Vec::new(), hinted: [Vec::new(), Vec::new()], advances: Vec::new() }
+    pub(crate) fn of_points(points: OutlinePoints, scale: Scale) -> Self {
+        let is_postscript = scale.is_postscript();
+        let hinted = [Vec::new(), Vec::new()];
+        Self { points, scales: Vec::new(), hinted, advances: Vec::new(), is_postscript }
     }
 
     /// The number of sizes.
@@ -66,6 +76,20 @@ impl OutlineSamples {
     pub(crate) fn plain(&self, axis: usize, size: usize) -> impl Iterator<Item = i32> + '_ {
         let scale = self.scales[size];
         self.points.coordinates[axis].iter().map(move |units| mul_fixed((*units).into(), scale))
+    }
+
+    /// Whether hinting leaves an axis alone at all sizes.
+    pub(crate) fn is_still(&self, axis: usize, fidelity: Fidelity) -> bool {
+        (0..self.sizes()).all(|size| {
+            let (scale, hinted) = (self.scales[size], self.hinted_at(axis, size));
+            if !self.is_postscript {
+                let tolerance = fidelity.tolerance() as u32 / 2;
+                return self.plain(axis, size).zip(hinted).all(|(a, b)| a.abs_diff(*b) <= tolerance);
+            }
+            let tolerance = if fidelity.is_exact() { 0 } else { 1 + mul_fixed(CONTROL_UNITS, scale) as u32 };
+            let units = &self.points.coordinates[axis];
+            units.iter().zip(hinted).all(|(v, b)| rounded_down(*v, scale).abs_diff(*b) <= tolerance)
+        })
     }
 
     /// The hinted positions along an axis at a size.

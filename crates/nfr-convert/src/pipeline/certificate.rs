@@ -17,14 +17,15 @@ use crate::writer::write_certificate;
 const TEACHER: &str = "skrifa 0.49";
 const CONVERTER: &str = concat!("nfr-convert ", env!("CARGO_PKG_VERSION"));
 
-/// Appends the certificate to a table.
+/// Appends the certificate to a table. `font` is the original, or its TrueType copy.
 pub(super) fn certify(
+    original: &FontRef<'_>,
     font: &FontRef<'_>,
     table: &mut Vec<u8>,
     measured: &BTreeMap<u16, Measured>,
     options: &Options,
 ) -> Result<(), Error> {
-    let is_exact = is_exact(font, table, options)?;
+    let is_exact = is_exact([original, font], table, options)?;
     let teacher = options.hinter.teacher(TEACHER);
     let options = arguments(options);
     let errors = Table::parse(table)?.gids().map(|gid| {
@@ -37,12 +38,13 @@ pub(super) fn certify(
 }
 
 /// Whether all hinted points are the teacher's at all sizes. They are compared where that was asked for and can be.
-fn is_exact(font: &FontRef<'_>, table: &[u8], options: &Options) -> Result<bool, Error> {
+fn is_exact([original, font]: [&FontRef<'_>; 2], table: &[u8], options: &Options) -> Result<bool, Error> {
     if !options.fidelity.is_exact() || !options.uses_outlines() || options.ppem_step != 1 {
         return Ok(false);
     }
-    let (original, neural) = (font.data().as_bytes(), assemble(font, table, &BTreeSet::new())?);
-    let pair = FontPair::open_taught(original, font.ttc_index().unwrap_or(0), &neural, options.hinter)?;
+    let (data, index) = (original.data().as_bytes(), original.ttc_index().unwrap_or(0));
+    let neural = assemble(font, table, &BTreeSet::new())?;
+    let pair = FontPair::open_taught(data, index, &neural, options.hinter)?;
     let gids: Vec<u16> = Table::parse(table)?.gids().collect();
     let verification = pair.verify(["", ""], &gids, &PpemList::from(options.ppem.clone()), options.jobs)?;
     Ok(verification.failures(0).is_empty())

@@ -14,7 +14,7 @@ mod warnings;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
-use read_fonts::FontRef;
+use read_fonts::{FontRef, TableProvider};
 
 use crate::assemble::{assemble, hint_bytes, outline_hash};
 use crate::compare::metrics::Sums;
@@ -23,6 +23,7 @@ use crate::conversion::{Conversion, GlyphReport, Progress, Stage};
 use crate::error::Error;
 use crate::input::open::{check_metrics, has_models, open};
 use crate::input::select::glyph_count;
+use crate::options::Hinter;
 use crate::options::{CELL_UNITS_PER_EM, Options};
 use crate::partial::{Kind, Partial};
 use crate::predict::Predictor;
@@ -63,17 +64,21 @@ pub fn resume(
     partial: Option<&Partial>,
 ) -> Result<Conversion, Error> {
     options.check()?;
-    let font = open(input, options.index)?;
-    if has_models(&font) {
+    let original = open(input, options.index)?;
+    if has_models(&original) {
         return Err(Error::Unsupported(
             "the font already carries an 'Nfrt' table and has no hints left; convert the original font"
                 .into(),
         ));
     }
-    check_metrics(&font)?;
-    warn_of_bitmaps(&font, progress);
-    let teacher = Teacher::with_hinter(&font, options.target, options.hinter)?;
-    let header = header(&font, options)?;
+    check_metrics(&original)?;
+    warn_of_bitmaps(&original, progress);
+    let teacher = Teacher::with_hinter(&original, options.target, options.hinter)?;
+    let font = teacher.true_type(&original)?;
+    if teacher.is_postscript() && original.fvar().is_ok() {
+        progress.warn("the font is variable; its default instance is converted");
+    }
+    let header = header(&font, &teacher, options)?;
     let units = teacher.units_per_em();
     let scale = header.scale(units).ok_or_else(|| {
         Error::InvalidParameter(format!(
@@ -130,7 +135,7 @@ pub fn resume(
     for gid in options.gids.iter().filter(|gid| left_out.binary_search(gid).is_err()) {
         sums.merge(&measured.get(gid).ok_or(Error::MissingGlyph(*gid))?.learnt);
     }
-    certify(&font, &mut table, &measured, options)?;
+    certify(&original, &font, &mut table, &measured, options)?;
     if options.target == Target::Mono {
         add_dropout(&mut table, &measured);
     }
@@ -207,7 +212,7 @@ fn warn_of_unhinted(sizes: &[TeacherAt], progress: &dyn Progress) -> Result<(), 
     Ok(())
 }
 
-fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
+fn header(font: &FontRef<'_>, teacher: &Teacher, options: &Options) -> Result<Header, Error> {
     let (first, last) = options.ppem.clone().into_inner();
     Ok(Header {
         target: options.target,
@@ -215,6 +220,8 @@ fn header(font: &FontRef<'_>, options: &Options) -> Result<Header, Error> {
         last_ppem: last - (last - first) % options.ppem_step,
         outline_hash: outline_hash(font)?,
         outlines_dropped: options.drop_outlines,
+        // The autohinter's points are those of TrueType.
+        is_postscript: teacher.is_postscript() && options.hinter == Hinter::Font,
         seed: options.seed,
         steps: options.schedule.steps as u16,
         knots: options.capacity.knots as u8,

@@ -92,17 +92,12 @@ fn plan(stages: &Stages<'_>, kept: Kept<'_>, glyphs: &Decomposition) {
 type FittedGlyph = ((OutlineSamples, u16), FittedOutline);
 
 /// A glyph's points and its tracks; none if it cannot have any. The hinted positions are left out if the glyph is encoded already.
-fn fitted(
-    stages: &Stages<'_>,
-    font: &Font,
-    gid: u16,
-    kept: Kept<'_>,
-) -> Result<Option<FittedGlyph>, Error> {
+fn fitted(stages: &Stages<'_>, font: &Font, gid: u16, kept: Kept<'_>) -> Result<Option<FittedGlyph>, Error> {
     let outline = match kept.fitted(gid) {
         Some(None) => return Ok(None),
         Some(Some(outline)) if kept.encoded(gid).is_some() => {
             let (points, advance) = stored_outline(font, gid)?;
-            return Ok(Some(((OutlineSamples::of_points(points), advance), outline)));
+            return Ok(Some(((OutlineSamples::of_points(points, stages.scale), advance), outline)));
         }
         Some(Some(outline)) => Some(outline),
         None => None,
@@ -222,7 +217,7 @@ fn outline_samples(
     gid: u16,
 ) -> Result<Option<(OutlineSamples, u16)>, Error> {
     let (points, advance) = stored_outline(font, gid)?;
-    let samples = OutlineSamples::new(&stages.samples(gid)?, points, advance, stages.scale.units_per_em());
+    let samples = OutlineSamples::new(&stages.samples(gid)?, points, advance, stages.scale);
     Ok(samples.map(|samples| (samples, advance)))
 }
 

@@ -9,9 +9,10 @@
 
 mod equivalent;
 mod outline;
+mod postscript;
 pub(crate) mod unhinted;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use read_fonts::tables::glyf::{Glyph, is_hint_reliant};
 use read_fonts::{FontRef, ReadError, TableProvider};
@@ -19,10 +20,12 @@ use skrifa::font::Font;
 use skrifa::{HintEngine, HintOptions, OutlineSource, RasterTarget, ScaleError, ScalerFont, ScalerSource};
 
 use crate::error::Error;
+use crate::input::open::owned;
 use crate::input::ppem::MAX_TEACHER_PPEM;
 use crate::options::Hinter;
 use equivalent::Equivalent;
 use nfr::Target;
+use postscript::PostScript;
 use unhinted::{draw, glyf_of, undrawable};
 
 pub use outline::Outline;
@@ -31,8 +34,10 @@ pub(crate) use unhinted::UnhintedOutlines;
 /// A hinted font as ground truth. It keeps a copy of the font, and may be used from several threads.
 pub struct Teacher {
     unhinted: UnhintedOutlines,
-    /// The font whose programs are run. Behind the font's own glyphs it may have more.
+    /// The font whose hints are run. Behind the font's own glyphs it may have more.
     hinted: Font,
+    /// The TrueType copy of a font with PostScript outlines.
+    postscript: Option<Arc<PostScript>>,
     uncertain: Vec<u16>,
     hinter: Hinter,
     raster: RasterTarget,
@@ -48,29 +53,41 @@ impl Teacher {
         Self::with_hinter(font, target, Hinter::Font)
     }
 
-    /// Takes the font as a teacher.
+    /// Takes the font as a teacher. One with PostScript outlines gets a TrueType copy, whose points the outlines have then
+    /// ([`Self::true_type`]). Of a variable one, the default instance is taken.
     ///
     /// # Errors
     ///
-    /// `Unsupported` for a variable font, a font without TrueType outlines, one without hint programs if those are to be run, or
-    /// one that FreeType calls tricky, whose outlines are only parts of glyphs before its programs put them together; `Malformed`
-    /// if its size of an em is not one that OpenType allows.
+    /// `Unsupported` for a variable TrueType font, a font without outlines, one without hints if those are to be run, or one that
+    /// FreeType calls tricky, whose outlines are only parts of glyphs before its programs put them together; `Malformed` if its
+    /// size of an em is not one that OpenType allows.
     pub fn with_hinter(font: &FontRef<'_>, target: Target, hinter: Hinter) -> Result<Self, Error> {
         let unhinted = UnhintedOutlines::new(font)?;
         match unhinted.table() {
-            Some(OutlineSource::Glyf) => {}
-            Some(_) => {
-                return Err(Error::Unsupported(
-                    "the outlines are PostScript (CFF), not TrueType; convert them to a hinted TrueType font first"
-                        .into(),
-                ));
+            Some(OutlineSource::Glyf) => Self::of_true_type(font, unhinted, target, hinter),
+            Some(OutlineSource::Cff | OutlineSource::Cff2) => {
+                let postscript = PostScript::new(font, hinter)?;
+                Ok(Self {
+                    unhinted: UnhintedOutlines::new(&copy_of(&postscript)?)?,
+                    hinted: owned(font)?,
+                    postscript: Some(Arc::new(postscript)),
+                    uncertain: Vec::new(),
+                    hinter,
+                    raster: raster_target(target, hinter)?,
+                })
             }
-            None => {
-                return Err(Error::Unsupported(
-                    "the font has no 'glyf' outlines; pass a TrueType font".into(),
-                ));
-            }
+            _ => Err(Error::Unsupported(
+                "the font has no outlines in 'glyf', 'CFF ' or 'CFF2'; pass a hinted TrueType or OpenType font".into(),
+            )),
         }
+    }
+
+    fn of_true_type(
+        font: &FontRef<'_>,
+        unhinted: UnhintedOutlines,
+        target: Target,
+        hinter: Hinter,
+    ) -> Result<Self, Error> {
         if font.fvar().is_ok() {
             return Err(Error::Unsupported(
                 "the font is variable; name an instance (--instance, --axis), or make one first (fonttools varLib.instancer)"
@@ -87,7 +104,7 @@ impl Teacher {
         let raster = raster_target(target, hinter)?;
         if hinter == Hinter::Auto {
             let hinted = unhinted.font().clone();
-            return Ok(Self { unhinted, hinted, uncertain: Vec::new(), hinter, raster });
+            return Ok(Self { unhinted, hinted, postscript: None, uncertain: Vec::new(), hinter, raster });
         }
         if !has_glyph_programs(font)? {
             return Err(Error::Unsupported(
@@ -98,7 +115,21 @@ impl Teacher {
         }
         let Equivalent { font: copy, uncertain } = Equivalent::of(font)?;
         let hinted = copy.unwrap_or_else(|| unhinted.font().clone());
-        Ok(Self { unhinted, hinted, uncertain, hinter, raster })
+        Ok(Self { unhinted, hinted, postscript: None, uncertain, hinter, raster })
+    }
+
+    /// The font whose outlines models move: `font`, which is the one that this teacher was made of, or its TrueType copy.
+    ///
+    /// # Errors
+    ///
+    /// `Malformed` if the copy cannot be read.
+    pub fn true_type<'t>(&'t self, font: &FontRef<'t>) -> Result<FontRef<'t>, Error> {
+        self.postscript.as_ref().map_or_else(|| Ok(font.clone()), |postscript| copy_of(postscript))
+    }
+
+    /// Whether the font has PostScript outlines.
+    pub fn is_postscript(&self) -> bool {
+        self.postscript.is_some()
     }
 
     /// Font units in an em.
@@ -135,6 +166,11 @@ impl Teacher {
                 "the font's 'fpgm' or 'prep' program fails at {ppem} ppem ({e}); leave the size out, or repair the font"
             )));
         }
+        let engine = if self.postscript.is_some() && engine == HintEngine::TrueType {
+            HintEngine::PostScript
+        } else {
+            engine
+        };
         if scaler.hint_engine() != Some(engine) {
             return Err(Error::Unsupported(format!(
                 "skrifa does not hint the font as asked for ({}) at {ppem} ppem; pass a hinted TrueType font",
@@ -144,6 +180,7 @@ impl Teacher {
         Ok(TeacherAt {
             strict: scaler,
             lenient: OnceLock::new(),
+            postscript: self.postscript.clone(),
             glyphs: self.unhinted.font().num_glyphs(),
             ppem,
             raster: self.raster,
@@ -157,6 +194,7 @@ impl Teacher {
     /// `NoSuchGlyph` for a glyph that the font does not have, `Malformed` for one that cannot be drawn.
     pub fn unhinted(&self, gid: u16, ppem: f32) -> Result<Outline, Error> {
         check_ppem(ppem)?;
+        self.check(gid)?;
         self.unhinted.at(gid, ppem)
     }
 
@@ -166,8 +204,19 @@ impl Teacher {
     ///
     /// As `unhinted`.
     pub fn unhinted_em(&self, gid: u16) -> Result<Outline, Error> {
+        self.check(gid)?;
         self.unhinted.em(gid)
     }
+
+    /// Whether the glyph has a TrueType outline.
+    fn check(&self, gid: u16) -> Result<(), Error> {
+        self.postscript.as_ref().map_or(Ok(()), |postscript| postscript.check(gid))
+    }
+}
+
+fn copy_of(postscript: &PostScript) -> Result<FontRef<'_>, Error> {
+    FontRef::new(&postscript.true_type)
+        .map_err(|e| Error::Malformed(format!("the font has no TrueType copy that can be read ({e})")))
 }
 
 /// The teacher at one size.
@@ -175,6 +224,7 @@ pub struct TeacherAt {
     strict: ScalerFont,
     /// Created for the first glyph whose program fails, which most fonts do not have.
     lenient: OnceLock<ScalerFont>,
+    postscript: Option<Arc<PostScript>>,
     /// The number of the font's own glyphs.
     glyphs: u32,
     ppem: u16,
@@ -214,7 +264,10 @@ impl TeacherAt {
         }
         let ppem = f32::from(self.ppem);
         match draw(&self.strict, gid) {
-            Ok(outline) => Ok((outline, None)),
+            Ok(outline) => match &self.postscript {
+                Some(postscript) => Ok((postscript.hinted(gid, outline, ppem)?, None)),
+                None => Ok((outline, None)),
+            },
             Err(e @ ScaleError::Hinting(_)) => {
                 let lenient = self.lenient.get_or_init(|| {
                     interpreter(

@@ -13,6 +13,11 @@ use nfr::{Bitmap, Placement};
 /// Line segments that approximate one quadratic curve: off by less than 1/2000 em on any glyph-sized arc.
 const SEGMENTS_PER_CURVE: usize = 8;
 
+/// The chords of cubic curves are so near to them (pixels); zeno computes in 1/256 pixel.
+const CHORD_ERROR: f32 = 1.0 / 1024.0;
+/// The most chords of a cubic curve, which bend less than that error for curves of thousands of pixels.
+const MAX_CHORDS: usize = 1024;
+
 /// Coordinates lie within this distance of the origin (pixels): beyond it an `f32` does not have fractions of a pixel
 /// fine enough for coverage.
 const MAX_REACH: f32 = (1 << 16) as f32;
@@ -28,9 +33,32 @@ pub struct Outline {
     pub advance: Option<f32>,
     /// What the hints ask of a renderer in black and white.
     pub dropout: Dropout,
+    /// The path that is filled, if it is not that of `commands`: the cubic curves that quadratic ones come near to.
+    filled: Option<Vec<Command>>,
 }
 
 impl Outline {
+    /// The same outline, filled as another one, whose cubic curves become lines.
+    pub(super) fn filled_as(self, other: &Self) -> Self {
+        let mut filled = Vec::new();
+        let mut at = Vector::ZERO;
+        for command in &other.commands {
+            match command {
+                Command::CurveTo(a, b, to) => filled.extend(chords([at, *a, *b, *to]).map(Command::LineTo)),
+                command => filled.push(*command),
+            }
+            if let Command::MoveTo(to) | Command::LineTo(to) | Command::CurveTo(_, _, to) = command {
+                at = *to;
+            }
+        }
+        Self { filled: Some(filled), ..self }
+    }
+
+    /// The path.
+    pub(super) fn commands(&self) -> &[Command] {
+        &self.commands
+    }
+
     /// Multiplies every coordinate by `factor`.
     pub fn scale(&mut self, factor: f32) {
         self.map(|point| point.map(|v| v * factor));
@@ -67,7 +95,7 @@ impl Outline {
                 Command::Close => Command::Close,
             })
             .collect();
-        Ok(Self { commands, points: points.to_vec(), ..self.clone() })
+        Ok(Self { commands, points: points.to_vec(), filled: None, ..self.clone() })
     }
 
     /// Whether another outline has the same contours but for its points' positions. A hint program can put a control point on the
@@ -82,7 +110,7 @@ impl Outline {
             *point = to(*point);
         }
         let moved = |p: &Vector| Vector::from(to([p.x, p.y]));
-        for command in &mut self.commands {
+        for command in self.commands.iter_mut().chain(self.filled.iter_mut().flatten()) {
             *command = match command {
                 Command::MoveTo(p) => Command::MoveTo(moved(p)),
                 Command::LineTo(p) => Command::LineTo(moved(p)),
@@ -142,7 +170,7 @@ impl Outline {
             return Ok(Bitmap::default());
         }
         self.check_box()?;
-        let mut mask = Mask::new(self.commands.as_slice());
+        let mut mask = Mask::new(self.filled.as_ref().unwrap_or(&self.commands).as_slice());
         // Without this call zeno 0.3 computes `top` from a height that it has not set yet.
         mask.origin(Origin::BottomLeft).inspect(|_, _, _| {});
         let (pixels, place) = mask.render();
@@ -179,6 +207,24 @@ impl Outline {
         }
         Ok(())
     }
+}
+
+/// The ends of the chords of a cubic curve. zeno's own, as FreeType's, are off by up to a tenth of a pixel.
+fn chords(curve: [Vector; 4]) -> impl Iterator<Item = Vector> {
+    let bend = |[a, b, c]: [Vector; 3]| (a.x - 2.0 * b.x + c.x).hypot(a.y - 2.0 * b.y + c.y);
+    let [a, b, c, d] = curve;
+    // A chord of a curve whose second derivative is v at most is v/8 away from it, at the parameter's unit step.
+    let count = (6.0 * bend([a, b, c]).max(bend([b, c, d])) / (8.0 * CHORD_ERROR)).sqrt().ceil().max(1.0);
+    // A damaged coordinate is found where the box is checked.
+    (1..=(count as usize).min(MAX_CHORDS)).map(move |k| {
+        let t = k as f32 / count.min(MAX_CHORDS as f32);
+        let s = 1.0 - t;
+        if t >= 1.0 {
+            d
+        } else {
+            a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
+        }
+    })
 }
 
 impl PathSink for Outline {

@@ -39,9 +39,14 @@ impl UnhintedOutlines {
         self.unscaled.font()
     }
 
+    /// An outline in font units.
+    pub(crate) fn units(&self, gid: u16) -> Result<Outline, Error> {
+        draw(&self.unscaled, gid).map_err(|e| undrawable(gid, None, &e))
+    }
+
     /// An outline in em.
     pub(crate) fn em(&self, gid: u16) -> Result<Outline, Error> {
-        let mut outline = draw(&self.unscaled, gid).map_err(|e| undrawable(gid, None, &e))?;
+        let mut outline = self.units(gid)?;
         outline.scale(1.0 / f32::from(self.units_per_em));
         Ok(outline)
     }

@@ -24,7 +24,7 @@ use nfr_convert::{Hinter, Options, Quality, Shape};
     "nfr-convert in.ttf sizes.ttf --text 'Hello, world' --ppem 10-20 --report report.json"
 ))]
 pub struct Args {
-    /// A hinted TrueType font; or one without hints, with --hinter auto. Collections and web fonts (WOFF, WOFF2) are read, too
+    /// A hinted font with TrueType or PostScript outlines; or one without hints, with --hinter auto. Collections and web fonts (WOFF, WOFF2) are read, too
     pub(super) input: PathBuf,
     /// The neural font to write, or the directory of --all-faces
     pub(super) output: PathBuf,

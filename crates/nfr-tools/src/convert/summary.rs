@@ -137,7 +137,11 @@ fn write_summary(out: &mut String, report: &ReportFile<'_>, added: usize) -> fmt
     writeln!(out, "table   {} bytes, {:.1} per glyph", report.table_bytes, report.bytes_per_glyph)?;
     let hints = &report.hint_bytes;
     if hints.total == 0 {
-        writeln!(out, "hints   none in the original")?;
+        let line = match report.about.hinter {
+            Hinter::Font => "PostScript hints are left out with the charstrings",
+            Hinter::Auto => "no hint programs in the original",
+        };
+        writeln!(out, "hints   {line}")?;
     } else {
         writeln!(
             out,
