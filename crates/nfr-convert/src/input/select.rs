@@ -174,7 +174,8 @@ impl Selection {
                 )));
             }
         };
-        if names == 0 {
+        // PostScript fonts name glyphs in 'CFF '.
+        if names == 0 && font.cff().is_err() {
             return Err(Error::InvalidParameter(
                 "the font's 'post' table has no glyph names; select with --gids or --unicodes instead".into(),
             ));
