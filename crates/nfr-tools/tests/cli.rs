@@ -118,7 +118,7 @@ fn a_font_that_cannot_teach_is_refused_with_the_reason() {
         let input = directory.write("in.ttf", font);
         convert(&directory, &input, &[]).fails_with(&[&["in.ttf"], parts].concat());
     };
-    refused(&sans_with(&[b"glyf", b"loca"], &[]), &["glyf", "pass a TrueType font"]);
+    refused(&sans_with(&[b"glyf", b"loca"], &[]), &["glyf", "pass a hinted TrueType or OpenType font"]);
     refused(&unhinted(&[]), &["no hint programs", "pass a hinted font"]);
     // What tools write into fonts without hints: PUSHW 511, SCANCTRL, PUSHB 4, SCANTYPE.
     let prep: &[u8] = &[0xb8, 0x01, 0xff, 0x85, 0xb0, 0x04, 0x8d];

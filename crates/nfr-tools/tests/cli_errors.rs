@@ -87,6 +87,10 @@ fn cases(directory: &Directory) -> Vec<Case> {
     std::fs::write(own_work, b"precious").unwrap();
     let taken = &directory.name("taken.ttf");
     let damaged = &file("damaged.ttf", &sans_with(&[], &[(b"Nfrt", &[0; 10])]));
+    let variable = concat!(env!("CARGO_MANIFEST_DIR"), "/../nfr-convert/tests/inputs/variable.ttf");
+    let no_stems = concat!(env!("CARGO_MANIFEST_DIR"), "/../nfr-convert/tests/postscript/unhinted.otf");
+    let woff = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../nfr-convert/tests/inputs/small.woff"));
+    let cut_woff = &file("cut.woff", &woff.unwrap()[..2000]);
     let png = &directory.name("out.png");
     let a = ["--text", "a"];
     vec![
@@ -175,7 +179,7 @@ fn cases(directory: &Directory) -> Vec<Case> {
         convert(
             &[no_glyf, out, a[0], a[1]],
             1,
-            ["no 'glyf' outlines", "no-glyf.ttf", "pass a TrueType font"],
+            ["no outlines in 'glyf'", "no-glyf.ttf", "pass a hinted TrueType"],
         ),
         convert(&[short_loca, out, a[0], a[1]], 1, ["'loca'", "short-loca.ttf", "repair the font"]),
         convert(&[far_loca, out, a[0], a[1]], 1, ["'loca' puts glyph", "far-loca.ttf", "repair the font"]),
@@ -222,6 +226,30 @@ fn cases(directory: &Directory) -> Vec<Case> {
             2,
             ["invalid value 'abacus'", "--backend", "use flex or ndarray"],
         ),
+        convert(
+            &[SANS, out, "--axis", "wght=600"],
+            1,
+            ["is not variable", "LiberationSans-Regular.ttf", "leave out --axis"],
+        ),
+        convert(&[variable, out, "--axis", "opsz=50"], 1, ["has no axis 'opsz'", "variable.ttf", "wght"]),
+        convert(
+            &[variable, out, "--axis", "wght=1000"],
+            1,
+            ["outside of the axis' range", "variable.ttf", "wght"],
+        ),
+        convert(
+            &[variable, out, "--axis", "wght=500", "--axis", "wght=600"],
+            1,
+            ["is given twice", "wght", "give it once"],
+        ),
+        convert(&[variable, out, "--instance", "Heavy"], 1, ["has no instance", "Heavy", "variable.ttf"]),
+        convert(
+            &[SANS, text, "--all-faces"],
+            1,
+            ["cannot make the directory", "text", "takes a directory as its output"],
+        ),
+        convert(&[no_stems, out], 1, ["no horizontal stem hints", "unhinted.otf", "--hinter auto"]),
+        convert(&[cut_woff, out], 1, ["truncated", "cut.woff", "get the file again"]),
         tool(&["render", neural], 2, ["nothing to write", "--png", "add --json"]),
         tool(
             &["render", SANS, "--json"],

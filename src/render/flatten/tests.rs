@@ -75,7 +75,7 @@ fn curve_at([a, b, c]: [i32; 3], t: f64) -> f64 {
 
 /// The vertices of one curve, which is given in units, without its first point.
 fn curve(points: [Point; 3]) -> Vec<Point> {
-    let mut polygons = Polygons::default();
+    let mut polygons = Polygons { flat: FLAT, ..Polygons::default() };
     polygons.curve(points[0], points[1], points[2]);
     let [x, y] = polygons.vertices;
     x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
