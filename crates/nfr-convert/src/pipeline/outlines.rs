@@ -88,13 +88,11 @@ fn plan(stages: &Stages<'_>, kept: Kept<'_>, glyphs: &Decomposition) {
     ]);
 }
 
+/// A glyph's points with its advance width in font units, and its tracks.
+type Fitted = ((OutlineSamples, u16), FittedOutline);
+
 /// A glyph's points and its tracks; none if it cannot have any. The hinted positions are left out if the glyph is encoded already.
-fn fitted(
-    stages: &Stages<'_>,
-    font: &Font,
-    gid: u16,
-    kept: Kept<'_>,
-) -> Result<Option<((OutlineSamples, u16), FittedOutline)>, Error> {
+fn fitted(stages: &Stages<'_>, font: &Font, gid: u16, kept: Kept<'_>) -> Result<Option<Fitted>, Error> {
     let outline = match kept.fitted(gid) {
         Some(None) => return Ok(None),
         Some(Some(outline)) if kept.encoded(gid).is_some() => {
