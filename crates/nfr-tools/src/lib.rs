@@ -24,6 +24,7 @@ mod args;
 mod exactness;
 mod failure;
 mod files;
+mod help;
 mod pace;
 mod progress;
 mod source;

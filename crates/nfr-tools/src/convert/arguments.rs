@@ -7,7 +7,7 @@ use clap::Parser;
 use crate::args::{SelectionArgs, all_cores, hinter, jobs, shape, target};
 use crate::failure::Failure;
 use crate::files::same_file;
-use crate::program::help_template;
+use crate::help::help_template;
 use crate::source::SourceArgs;
 use nfr::Target;
 use nfr_convert::closure::LayoutFeatures;
