@@ -170,7 +170,8 @@ impl Selection {
             Err(ReadError::TableIsMissing(_)) => 0,
             Err(e) => return Err(Error::Malformed(format!("table 'post' cannot be read ({e})"))),
         };
-        if names == 0 {
+        // PostScript fonts name glyphs in 'CFF '.
+        if names == 0 && font.cff().is_err() {
             return Err(Error::InvalidParameter(
                 "the font's 'post' table has no glyph names; select with --gids or --unicodes instead".into(),
             ));

@@ -9,7 +9,7 @@ use crate::model::sizes::Scale;
 /// in 1/64 pixel if it is touched. Gives the positions.
 fn moved(units: &[i16], scale: i32, moves: &[Option<i16>]) -> Vec<i32> {
     let mut out = Vec::new();
-    scaled(units, scale, &mut out);
+    scaled(units, &mut out, |v| mul_fixed(v.into(), scale));
     // Each touched point has a track of its own.
     let track_of: Vec<u8> = moves.iter().enumerate().map(|(k, m)| m.map_or(UNTOUCHED, |_| k as u8)).collect();
     let moves: Vec<i16> = moves.iter().map(|moved| moved.unwrap_or_default()).collect();
@@ -222,5 +222,29 @@ proptest! {
         moves.rotate_left(first);
         out.rotate_left(first);
         prop_assert_eq!(moved(&units, EQUAL, &moves), out);
+    }
+}
+
+#[test]
+fn coordinates_of_postscript_outlines_are_rounded_down_where_nothing_is_hinted() {
+    // 12 ppem of 1000 units: 0.768 of 1/64 pixel for a unit.
+    let scale = scale_of(12.0, 1000);
+    assert_eq!([100, 102, -100].map(|v| mul_fixed(v, scale)), [77, 78, -77]);
+    assert_eq!([100, 102, -100].map(|v| rounded_down(v, scale)), [76, 78, -77]);
+    let points = OutlinePoints {
+        coordinates: [vec![0, 100, 100], vec![0, 0, 100]],
+        on_curve: vec![true; 3],
+        ends: vec![3],
+        is_unfit: false,
+    };
+    for (is_postscript, at) in [(false, 77), (true, 76)] {
+        let sizes = Scale::new(1000, 12, 12).unwrap().with_postscript(is_postscript);
+        let model = OutlineModel::new(points.clone(), OutlineWeights::default(), sizes, 0..1).unwrap();
+        let mut places = [Vec::new(), Vec::new()];
+        hint(&model, &sizes.at(12.0), &mut places);
+        assert_eq!(places, [vec![0, at, at], vec![0, 0, at]]);
+        // Nothing is hinted at other sizes.
+        hint(&model, &sizes.at(24.0), &mut places);
+        assert_eq!(places[0][1], 154);
     }
 }
