@@ -82,9 +82,9 @@ impl Layers {
 
 impl Norms {
     /// The batch normalisations of several networks.
-    pub(super) fn stacked<'n>(norms: impl Iterator<Item = &'n BatchNorm> + Clone) -> Self {
+    pub(super) fn stacked(norms: &[&BatchNorm]) -> Self {
         let stacked = |of: &dyn Fn(&BatchNorm) -> &Param<Tensor<1>>| {
-            let rows = norms.clone().map(|norm| plain(of(norm)).unsqueeze::<2>()).collect();
+            let rows = norms.iter().map(|norm| plain(of(norm)).unsqueeze::<2>()).collect();
             Param::from_tensor(Tensor::stack(rows, 0))
         };
         Self { gamma: stacked(&|norm| &norm.gamma), beta: stacked(&|norm| &norm.beta) }

@@ -50,7 +50,9 @@ impl Lockstep {
             let layer = |k: usize| Layers::stacked(networks.iter().map(|network| of(network).get(k)));
             (0..count).map(layer).collect::<Vec<_>>()
         };
-        let norm = |k: usize| Norms::stacked(networks.iter().map(|network| &network.norms()[k]));
+        let norm = |k: usize| {
+            Norms::stacked(&networks.iter().map(|network| &network.norms()[k]).collect::<Vec<_>>())
+        };
         Self {
             size_encoder: stacked(&|network| network.layers().0),
             trunk: stacked(&|network| network.layers().1),

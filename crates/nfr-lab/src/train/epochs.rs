@@ -15,7 +15,7 @@ pub(super) fn written_histories(histories: &[Vec<Epoch>]) -> Vec<u8> {
 
 /// The histories of so many networks that bytes hold; `None` if they are not as long as each other.
 pub(super) fn read_histories(bytes: &[u8], networks: usize) -> Option<Vec<Vec<Epoch>>> {
-    if networks == 0 || bytes.len() % (EPOCH * networks) != 0 {
+    if networks == 0 || !bytes.len().is_multiple_of(EPOCH * networks) {
         return None;
     }
     if bytes.is_empty() {
