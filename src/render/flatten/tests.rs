@@ -22,7 +22,7 @@ fn flattened(contours: &[Vec<Stop>], offset: Point) -> Polygons {
         }
         outline.ends.push(outline.on_curve.len() as u16);
     }
-    let mut polygons = Polygons::default();
+    let mut polygons = Polygons { flat: FLAT, ..Polygons::default() };
     polygons.add(&outline, &places, offset, [1; 2], FLAT);
     polygons
 }
@@ -233,7 +233,7 @@ fn contours_of_one_or_two_points_draw_nothing() {
             is_unfit: false,
         };
         let places = points.coordinates.each_ref().map(|v| v.iter().map(|v| i32::from(*v)).collect());
-        let mut polygons = Polygons::default();
+        let mut polygons = Polygons { flat: FLAT, ..Polygons::default() };
         polygons.add(&points, &places, [0, 0], [1; 2], FLAT);
         assert_eq!(polygons.ends.is_empty(), count < 3, "{count} points");
     }
