@@ -1,10 +1,13 @@
 //! `nfr-convert --dry-run`: time and bytes of a conversion, estimated from that of a sample of its glyphs.
 
+use std::collections::HashMap;
 use std::io::{self, Write};
 use std::time::Instant;
 
 use read_fonts::TableProvider;
-use read_fonts::tables::glyf::Glyph;
+use read_fonts::tables::glyf::{Glyf, Glyph};
+use read_fonts::tables::loca::Loca;
+use read_fonts::types::GlyphId;
 
 use super::into::Existing;
 use crate::failure::Failure;
@@ -25,9 +28,12 @@ const OUTLINES: std::ops::RangeInclusive<usize> = 48..=512;
 const FIELDS: std::ops::RangeInclusive<usize> = 10..=64;
 
 /// The bytes of a glyph get fewer by this factor whenever there are twice as many glyphs, as more of their tracks are shared. From a
-/// twentieth of the glyphs to all it is 0.88 in DejaVu Sans, 0.92 in Carlito, 0.94 to 0.96 in Liberation Sans and Serif and IPA Gothic,
-/// and 0.97 in Lohit Devanagari.
-const SHARING: f64 = 0.92;
+/// twentieth of the glyphs to all it is 0.87 in DejaVu Sans, 0.92 in Carlito, 0.94 in Liberation Sans and Serif and IPA Gothic, and
+/// 0.97 in Lohit Devanagari.
+const SHARING: f64 = 0.91;
+
+/// Glyphs that are put together from others are drawn and compared, but have no model to find: a rough share of the time.
+const OF_COMPOSED: f64 = 0.4;
 
 struct Silent;
 
@@ -42,10 +48,22 @@ struct Subject {
     points: usize,
 }
 
+impl Subject {
+    /// The time that the glyph takes, as a multiple of that of a blank one, if its model is not put together from others: hints, and
+    /// curves, take as long as there are points, and each of the tracks that are tried is compared at all points.
+    fn work(&self) -> f64 {
+        const SQUARE: f64 = 50.0;
+        let points = self.points as f64 / 10.0;
+        1.0 + points * (1.0 + self.points as f64 / SQUARE)
+    }
+}
+
 /// A conversion of some glyphs.
 struct Sample {
     seconds: f64,
     glyphs: usize,
+    /// What took the time, in that of blank glyphs.
+    work: f64,
     /// Bytes of models that are not put together from others, and how many there are.
     own: (usize, usize),
     /// Bytes of models that are, and how many there are.
@@ -94,20 +112,30 @@ pub(super) fn run(
 /// The glyphs by what they are, then by their points.
 fn subjects(input: &[u8], options: &Options) -> Result<Vec<Subject>, Error> {
     let font = open(input, options.index)?;
-    let (loca, glyf) = (font.loca(None).ok(), font.glyf().ok());
+    let (Ok(loca), Ok(glyf)) = (font.loca(None), font.glyf()) else { return Ok(Vec::new()) };
     let describe = |&gid: &u16| {
-        let glyph =
-            loca.as_ref().zip(glyf.as_ref()).and_then(|(loca, glyf)| loca.get_glyf(gid.into(), glyf).ok()?);
-        let (is_composite, points) = match glyph {
-            Some(Glyph::Simple(simple)) => (false, simple.num_points()),
-            Some(Glyph::Composite(composite)) => (true, composite.components().count()),
-            None => (false, 0),
-        };
+        let (is_composite, points) = points(&loca, &glyf, gid.into(), 0);
         Subject { gid, is_composite, points }
     };
     let mut subjects: Vec<Subject> = options.gids.iter().map(describe).collect();
     subjects.sort_by_key(|subject| (subject.is_composite, subject.points, subject.gid));
     Ok(subjects)
+}
+
+/// Whether a glyph is composite, and its points, those of its parts among them.
+fn points(loca: &Loca<'_>, glyf: &Glyf<'_>, gid: GlyphId, depth: usize) -> (bool, usize) {
+    /// Parts of parts deeper than this are left out of the estimate.
+    const DEEPEST: usize = 4;
+    /// So are parts beyond these.
+    const MOST_PARTS: usize = 16;
+    match loca.get_glyf(gid, glyf) {
+        Ok(Some(Glyph::Simple(simple))) => (false, simple.num_points()),
+        Ok(Some(Glyph::Composite(composite))) if depth < DEEPEST => {
+            let parts = composite.components().take(MOST_PARTS);
+            (true, parts.map(|part| points(loca, glyf, part.glyph.into(), depth + 1).1).sum())
+        }
+        _ => (false, 0),
+    }
 }
 
 /// The estimate, and how many glyphs were converted for it.
@@ -151,12 +179,15 @@ impl Sample {
         let pair = FontPair::open(input, options.index, &conversion.font)?;
         gids.retain(|gid| conversion.left_out.binary_search(gid).is_err());
         pair.report(["", ""], &gids, ppem, options.jobs)?;
-        Ok(Self::of(&conversion, count, start.elapsed().as_secs_f64()))
+        Ok(Self::of(&conversion, subjects, count, start.elapsed().as_secs_f64()))
     }
 
-    fn of(conversion: &Conversion, glyphs: usize, seconds: f64) -> Self {
+    fn of(conversion: &Conversion, subjects: &[Subject], glyphs: usize, seconds: f64) -> Self {
+        let works: HashMap<u16, f64> = subjects.iter().map(|subject| (subject.gid, subject.work())).collect();
+        let mut work = 0.0;
         let (mut own, mut composed) = ((0, 0), (0, 0));
         for glyph in &conversion.glyphs {
+            work += works.get(&glyph.gid).unwrap_or(&1.0) * if glyph.composed { OF_COMPOSED } else { 1.0 };
             if glyph.composed {
                 composed = (composed.0 + glyph.bytes, composed.1 + 1);
             } else {
@@ -164,14 +195,7 @@ impl Sample {
             }
         }
         let (table_bytes, file_bytes) = (conversion.table_bytes, conversion.font.len());
-        Self { seconds, glyphs, own, composed, table_bytes, file_bytes }
-    }
-
-    /// The time that glyphs take, in that of one that is not put together from others.
-    fn work(own: f64, composed: f64) -> f64 {
-        /// Glyphs that are put together from others are drawn and compared, but have no model to find.
-        const OF_COMPOSED: f64 = 0.4;
-        own + OF_COMPOSED * composed
+        Self { seconds, glyphs, work, own, composed, table_bytes, file_bytes }
     }
 
     /// The estimate of all glyphs from this sample and a smaller one.
@@ -183,11 +207,15 @@ impl Sample {
         let composed = composites * (self.composed.1 as f64 / sampled_composites).min(1.0);
         let own = all - composed;
         // Time: what does not depend on the glyphs, and what does.
-        let [little, much] =
-            [smaller, self].map(|sample| Self::work(sample.own.1 as f64, sample.composed.1 as f64));
+        let whole = |subject: &Subject| {
+            let composed = if subject.is_composite { composed / composites.max(1.0) } else { 0.0 };
+            subject.work() * (1.0 - composed * (1.0 - OF_COMPOSED))
+        };
+        let work: f64 = subjects.iter().map(whole).sum();
+        let [little, much] = [smaller.work, self.work];
         let each =
             if much > little { (self.seconds - smaller.seconds).max(0.0) / (much - little) } else { 0.0 };
-        let seconds = self.seconds + each * (Self::work(own, composed) - much).max(0.0);
+        let seconds = self.seconds + each * (work - much).max(0.0);
         // Bytes: those of models, and those of the table for each of them.
         let mean = |(bytes, count): (usize, usize)| bytes as f64 / count.max(1) as f64;
         let count = |sample: &Self| (sample.own.1 + sample.composed.1) as f64;
