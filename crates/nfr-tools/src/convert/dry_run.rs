@@ -132,7 +132,7 @@ fn points(loca: &Loca<'_>, glyf: &Glyf<'_>, gid: GlyphId, depth: usize) -> (bool
         Ok(Some(Glyph::Simple(simple))) => (false, simple.num_points()),
         Ok(Some(Glyph::Composite(composite))) if depth < DEEPEST => {
             let parts = composite.components().take(MOST_PARTS);
-            (true, parts.map(|part| points(loca, glyf, part.glyph.into(), depth + 1).1).sum())
+            (true, parts.map(|part| points(loca, glyf, part.glyph, depth + 1).1).sum())
         }
         _ => (false, 0),
     }
