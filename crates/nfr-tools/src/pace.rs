@@ -19,8 +19,8 @@ pub(super) enum Part {
 }
 
 impl Part {
-    /// The time that a glyph takes, in milliseconds, as measured with all glyphs of Liberation Sans at 8–64 ppem; a field with
-    /// printable ASCII. Only how they compare matters.
+    /// How the times that a glyph takes compare, roughly. With these, the share of a conversion of all glyphs of Liberation Sans grows
+    /// evenly: 29, 58 and 87 % after 10, 20 and 30 of 35 seconds.
     fn weight(self) -> f64 {
         match self {
             Self::Converting(Stage::Reading) => 0.8,

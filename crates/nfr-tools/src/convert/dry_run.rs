@@ -28,11 +28,11 @@ const OUTLINES: std::ops::RangeInclusive<usize> = 48..=512;
 const FIELDS: std::ops::RangeInclusive<usize> = 10..=64;
 
 /// The bytes of a glyph get fewer by this factor whenever there are twice as many glyphs, as more of their tracks are shared. From a
-/// twentieth of the glyphs to all it is 0.88 in DejaVu Sans, 0.92 in Carlito, 0.94 to 0.96 in Liberation Sans and Serif and IPA Gothic,
-/// and 0.97 in Lohit Devanagari.
+/// twentieth of the glyphs to all it is 0.87 in DejaVu Sans, 0.92 in Carlito, 0.94 in Liberation Sans and Serif and IPA Gothic, and
+/// 0.97 in Lohit Devanagari.
 const SHARING: f64 = 0.91;
 
-/// Glyphs that are put together from others are drawn and compared, but have no model to find: the share of the time.
+/// Glyphs that are put together from others are drawn and compared, but have no model to find: a rough share of the time.
 const OF_COMPOSED: f64 = 0.4;
 
 struct Silent;
