@@ -23,7 +23,6 @@ use crate::conversion::{Conversion, GlyphReport, Progress, Stage};
 use crate::error::Error;
 use crate::input::open::{check_metrics, has_models, open};
 use crate::input::select::glyph_count;
-use crate::options::Hinter;
 use crate::options::{CELL_UNITS_PER_EM, Options};
 use crate::partial::{Kind, Partial};
 use crate::predict::Predictor;
@@ -220,8 +219,7 @@ fn header(font: &FontRef<'_>, teacher: &Teacher, options: &Options) -> Result<He
         last_ppem: last - (last - first) % options.ppem_step,
         outline_hash: outline_hash(font)?,
         outlines_dropped: options.drop_outlines,
-        // The autohinter's points are those of TrueType.
-        is_postscript: teacher.is_postscript() && options.hinter == Hinter::Font,
+        is_postscript: teacher.is_postscript(),
         seed: options.seed,
         steps: options.schedule.steps as u16,
         knots: options.capacity.knots as u8,
