@@ -9,8 +9,8 @@ use crate::number::{UNIT, UNIT_BITS};
 
 /// A curve is split until its second difference is at most this many units along both axes.
 pub(super) const FLAT: i32 = UNIT / 4;
-/// The same for outlines that had cubic curves: their quadratic curves are shorter, and what they are compared with is not split
-/// where these are.
+/// The same for outlines that were PostScript's: their models learn from cubic curves that are filled almost exactly, against which
+/// coarser lines would be an error.
 pub(super) const FINE: i32 = UNIT / 64;
 /// The most vertices of a glyph.
 const MAX_VERTICES: usize = 1 << 18;
