@@ -79,6 +79,46 @@ proptest! {
     }
 }
 
+/// A number divided by 255, rounded to the nearest.
+fn by_255(number: u32) -> u32 {
+    (number + 127) / 255
+}
+
+proptest! {
+    /// Masks are drawn several pixels at a time, which are other ones at each edge and width.
+    #[test]
+    fn each_pixel_of_a_mask_is_rounded_as_if_it_were_alone(
+        canvas in 1usize..40,
+        (x, y, width, height) in (-12i32..40, -12i32..12, 0u32..30, 0u32..14),
+        colors: [[u8; 4]; 2],
+        levels in prop::collection::vec(prop_oneof![Just(0), Just(255), any::<u8>()], 0..30 * 14),
+        before in prop::collection::vec(any::<u8>(), 4 * 40 * 7),
+    ) {
+        let mut before = before[..4 * 7 * canvas].to_vec();
+        before.chunks_mut(4).for_each(|pixel| pixel[3] = 255);
+        let (mut drawn, mut expected) = (before.clone(), before);
+        let mut neural = RgbaCanvas::new(&mut drawn, canvas as u32);
+        for color in colors {
+            let [red, green, blue, alpha] = color;
+            let mask = Image { width, height, data: &levels };
+            neural.mask(x, y, mask, Color::rgba(red, green, blue, alpha));
+            let premultiplied = [red, green, blue, 255].map(|v| by_255(u32::from(v) * u32::from(alpha)));
+            for (index, level) in levels.iter().enumerate().take((width * height) as usize) {
+                let place = [x + index as i32 % width as i32, y + index as i32 / width as i32];
+                if (0..canvas as i32).contains(&place[0]) && (0..7).contains(&place[1]) {
+                    let start = 4 * (place[1] as usize * canvas + place[0] as usize);
+                    let level = u32::from(*level);
+                    let rest = 255 - by_255(premultiplied[3] * level);
+                    for (byte, color) in expected[start..start + 4].iter_mut().zip(premultiplied) {
+                        *byte = by_255(color * level + u32::from(*byte) * rest) as u8;
+                    }
+                }
+            }
+        }
+        prop_assert_eq!(drawn, expected);
+    }
+}
+
 #[test]
 fn no_canvas_is_too_small() {
     let data = [255; 64];
