@@ -1,5 +1,5 @@
 /*
- * A font loader for Dear ImGui, 1.92.0 or later: what has a model in its font is drawn by nfr, everything else as before.
+ * A font loader for Dear ImGui, 1.92.9 and 1.93: what has a model in its font is drawn by nfr, everything else as before.
  *
  *     ImFontAtlas *fonts = ImGui::GetIO().Fonts;
  *     fonts->SetFontLoader(nfr_imgui_font_loader()); // for all fonts; or ImFontConfig::FontLoader for one
