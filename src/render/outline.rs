@@ -1,20 +1,12 @@
 //! Drawing outlines, with hints or without: they are hinted at a size, flattened and filled.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
-use read_fonts::model::glyph::outline::UnscaledOutlineSink;
-use read_fonts::tables::glyf::PointFlags;
-use read_fonts::tables::glyf::outline::{Buffers, OutlinePlan, Unscaled};
-use read_fonts::types::{GlyphId, Point};
-
 use super::area::Area;
-
 use super::flatten::{FINE, FLAT, Polygons};
 use super::font::Font;
 use super::scratch::Scratch;
 use super::strips::{STRIP, in_strips};
-use super::tables::OutlineTables;
 use crate::bitmap::Canvas;
 use crate::constants::MAX_SIDE;
 use crate::error::Error;
@@ -35,39 +27,8 @@ pub(super) fn read_outline(font: &Font, glyph: u32, points: &mut OutlinePoints) 
         return Err(Error::NoSuchGlyph(glyph));
     }
     points.clear();
-    let read = font.outline_tables().and_then(|tables| load(&tables, GlyphId::new(glyph), points));
+    let read = font.outline_tables().and_then(|(outlines, hmtx)| outlines.load(&hmtx, glyph, points));
     if read.is_some() && !points.is_unfit { Ok(()) } else { Err(Error::MalformedOutline(glyph)) }
-}
-
-/// Adds the points of a glyph, components resolved. None if they cannot be read; a blank glyph has no points.
-fn load(tables: &OutlineTables<'_>, glyph: GlyphId, points: &mut OutlinePoints) -> Option<()> {
-    let plan = OutlinePlan::new(tables, glyph).ok()?;
-    let lengths = plan.buffer_lengths::<Unscaled>();
-    let count = lengths.points as usize;
-    let (mut places, mut flags) = (vec![Point::default(); count], vec![PointFlags::default(); count]);
-    let mut ends = vec![0; lengths.contours as usize];
-    let buffers = Buffers {
-        points: &mut places,
-        flags: &mut flags,
-        contours: &mut ends,
-        unscaled: &mut [],
-        deltas: &mut [],
-        iup: &mut [],
-        composite_deltas: &mut [],
-    };
-    let outline = plan.load(tables, &Unscaled, buffers, None).ok()?;
-    let mut start = 0;
-    for &end in outline.contours() {
-        let contour = start..usize::from(end) + 1;
-        let (places, flags) = (outline.points().get(contour.clone())?, outline.flags().get(contour.clone())?);
-        places
-            .iter()
-            .zip(flags)
-            .for_each(|(place, flags)| points.point(place.x, place.y, flags.without_markers()));
-        points.end_contour();
-        start = contour.end;
-    }
-    Some(())
 }
 
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.

@@ -5,10 +5,11 @@ use core::cell::RefCell;
 use core::ops::Range;
 
 use read_fonts::tables::glyf::Glyf;
-use read_fonts::tables::glyf::{Anchor, CompositeGlyphFlags, Glyph};
 use read_fonts::tables::loca::Loca;
 
+use super::component::Component;
 use super::font::Font;
+use super::glyf::{Outline, Outlines};
 use super::outline::read_outline;
 use super::shared_tracks::SharedTracks;
 use crate::error::{Damage, Error};
@@ -114,8 +115,8 @@ impl Font {
 
     /// What a composite glyph of `glyf` consists of.
     fn components(&self, glyph: u32) -> Option<Vec<Part>> {
-        let tables = self.outline_tables()?;
-        components(&tables.loca, &tables.glyf, glyph)
+        let (outlines, _) = self.outline_tables()?;
+        parts_of(&outlines, glyph)
     }
 }
 
@@ -172,11 +173,15 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
 /// The simple glyphs that a composite glyph of `glyf` consists of, with their offsets in font units. None for a simple glyph, for
 /// one whose components are scaled or attached to points, and for one that has too many or cannot be read.
 pub fn components(loca: &Loca<'_>, glyf: &Glyf<'_>, glyph: u32) -> Option<Vec<Part>> {
-    if let Some(Glyph::Simple(_)) | None = loca.get_glyf(glyph.into(), glyf).ok()? {
+    parts_of(&Outlines { glyf: glyf.offset_data().as_bytes(), loca: loca.clone() }, glyph)
+}
+
+fn parts_of(outlines: &Outlines<'_>, glyph: u32) -> Option<Vec<Part>> {
+    if let Outline::Blank | Outline::Simple { .. } = outlines.get(glyph)? {
         return None;
     }
     let mut found = Found { parts: Vec::new(), steps: 0 };
-    collect((loca, glyf), glyph, [0; 2], MAX_DEPTH, &mut found)?;
+    collect(outlines, glyph, [0; 2], MAX_DEPTH, &mut found)?;
     Some(found.parts)
 }
 
@@ -191,7 +196,7 @@ struct Found {
 const MAX_STEPS: usize = 256;
 
 fn collect(
-    tables: (&Loca<'_>, &Glyf<'_>),
+    outlines: &Outlines<'_>,
     glyph: u32,
     offset: [i16; 2],
     depth: usize,
@@ -201,25 +206,20 @@ fn collect(
     if found.steps > MAX_STEPS {
         return None;
     }
-    let scaled = CompositeGlyphFlags::WE_HAVE_A_SCALE
-        | CompositeGlyphFlags::WE_HAVE_AN_X_AND_Y_SCALE
-        | CompositeGlyphFlags::WE_HAVE_A_TWO_BY_TWO;
-    match tables.0.get_glyf(glyph.into(), tables.1).ok()? {
-        Some(Glyph::Simple(_)) if found.parts.len() < MAX_PARTS => {
+    match outlines.get(glyph)? {
+        Outline::Blank => {}
+        Outline::Simple { .. } if found.parts.len() < MAX_PARTS => {
             found.parts.push(Part { gid: glyph.try_into().ok()?, offset, ..Part::default() });
         }
-        Some(Glyph::Simple(_)) => return None,
-        Some(Glyph::Composite(composite)) => {
-            for component in composite.components() {
-                let Anchor::Offset { x, y } = component.anchor else { return None };
-                if component.flags.intersects(scaled) {
-                    return None;
-                }
-                let offset = [offset[0].checked_add(x)?, offset[1].checked_add(y)?];
-                collect(tables, component.glyph.to_u32(), offset, depth.checked_sub(1)?, found)?;
+        Outline::Simple { .. } => return None,
+        Outline::Composite { bytes, .. } => {
+            for component in Component::list(bytes) {
+                let component = component?;
+                let [x, y] = component.offset().filter(|_| !component.is_scaled())?;
+                let offset = [offset[0].checked_add(x as i16)?, offset[1].checked_add(y as i16)?];
+                collect(outlines, component.glyph, offset, depth.checked_sub(1)?, found)?;
             }
         }
-        None => {}
     }
     Some(())
 }
