@@ -55,14 +55,15 @@ impl<'a> Outlines<'a> {
         })
     }
 
-    /// Adds the points of a glyph, and places them by the left side bearings of `hmtx`. None if they cannot be read.
-    pub(super) fn load(&self, hmtx: &Hmtx<'_>, glyph: u32, points: &mut OutlinePoints) -> Option<()> {
+    /// The points of a glyph, placed by the left side bearings of `hmtx`. None if they cannot be read.
+    pub(super) fn load(&self, hmtx: &Hmtx<'_>, glyph: u32) -> Option<OutlinePoints> {
+        let points = OutlinePoints::default();
         let mut loading = Loading { outlines: self, hmtx, points, components: 0 };
         let origin = loading.load(glyph, MAX_DEPTH)?;
         if origin != 0 {
             loading.translate(0, [-origin, 0]);
         }
-        Some(())
+        Some(loading.points)
     }
 }
 
@@ -70,7 +71,7 @@ impl<'a> Outlines<'a> {
 struct Loading<'l> {
     outlines: &'l Outlines<'l>,
     hmtx: &'l Hmtx<'l>,
-    points: &'l mut OutlinePoints,
+    points: OutlinePoints,
     /// How many have been read.
     components: usize,
 }
@@ -83,7 +84,7 @@ impl Loading<'_> {
             Outline::Blank => Some(-bearing()),
             Outline::Simple { contours, left, bytes } => {
                 let origin = i32::from(left) - bearing();
-                simple(contours, bytes, self.points)?;
+                simple(contours, bytes, &mut self.points)?;
                 Some(origin)
             }
             Outline::Composite { left, bytes } => {

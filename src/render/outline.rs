@@ -17,18 +17,17 @@ use crate::number::{UNIT, UNIT_BITS, round};
 use crate::options::DrawOptions;
 use crate::placement::Placement;
 
-/// Reads the outline of a glyph of a font into `points`.
+/// Reads the outline of a glyph of a font.
 ///
 /// # Errors
 ///
 /// `NoSuchGlyph`, `MalformedOutline`.
-pub(super) fn read_outline(font: &Font, glyph: u32, points: &mut OutlinePoints) -> Result<(), Error> {
+pub(super) fn read_outline(font: &Font, glyph: u32) -> Result<OutlinePoints, Error> {
     if glyph >= font.glyph_count() {
         return Err(Error::NoSuchGlyph(glyph));
     }
-    points.clear();
-    let read = font.outline_tables().and_then(|(outlines, hmtx)| outlines.load(&hmtx, glyph, points));
-    if read.is_some() && !points.is_unfit { Ok(()) } else { Err(Error::MalformedOutline(glyph)) }
+    let read = font.outline_tables().and_then(|(outlines, hmtx)| outlines.load(&hmtx, glyph));
+    read.filter(|points| !points.is_unfit).ok_or(Error::MalformedOutline(glyph))
 }
 
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.
@@ -41,9 +40,7 @@ pub(super) fn draw_plain<'b>(
     room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
 ) -> Result<Option<Placement>, Error> {
     let options = options.checked()?;
-    let mut points = OutlinePoints::default();
-    read_outline(font, glyph, &mut points)?;
-    let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0..0);
+    let model = OutlineModel::new(read_outline(font, glyph)?, OutlineWeights::default(), font.scale(), 0..0);
     let model = model.map_err(|damage| damage.of(glyph))?;
     let size = HintedSize::plain(options.ppem);
     let room = |placement: Placement| {

@@ -15,7 +15,7 @@ use super::shared_tracks::SharedTracks;
 use crate::error::{Damage, Error};
 use crate::limits::Limits;
 use crate::model::compose::Part;
-use crate::model::outline::{OutlineModel, OutlinePoints};
+use crate::model::outline::OutlineModel;
 use crate::table::MAX_PARTS;
 use crate::table::context_model::ContextModel;
 use crate::table::outline::{
@@ -32,7 +32,6 @@ const MAX_DEPTH: usize = 16;
 pub(super) struct Memory {
     tracks: SharedTracks,
     /// Working memory.
-    points: OutlinePoints,
     slots: Vec<u16>,
 }
 
@@ -48,12 +47,10 @@ impl Font {
         let table = self.table()?;
         let (outlines, scale) = (*table.outlines(), self.scale());
         let message = outlines.glyph(glyph)?;
-        read_outline(self, glyph, &mut memory.points)?;
-        let points = memory.points.clone();
+        let points = read_outline(self, glyph)?;
         let tracks = RefCell::new(&mut memory.tracks);
-        let moves = |axis: usize, number: usize, sizes: Range<usize>| {
-            let decode =
-                |memory: &mut Vec<u16>| self.shared_moves(&outlines, axis, number, sizes.clone(), memory);
+        let moves = |axis: usize, number: usize, sizes: Range<usize>, memory: &mut Vec<u16>| {
+            let decode = || self.shared_moves(&outlines, axis, number, sizes.clone(), memory);
             tracks.borrow_mut().moves(axis, number, sizes.clone(), decode)
         };
         let shared = Shared { levels: outlines.levels(), moves: &moves };
@@ -106,8 +103,7 @@ impl Font {
         let parts = self.components(glyph).map(|parts| plain_parts(&parts));
         let advance = self.advance_units(glyph);
         let outline_hash = || {
-            let mut points = OutlinePoints::default();
-            read_outline(self, glyph, &mut points).ok()?;
+            let points = read_outline(self, glyph).ok()?;
             Some(points.hash(advance))
         };
         f(&KnownGlyph { parts: parts.as_deref(), advance, outline_hash: &outline_hash })
@@ -130,8 +126,8 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     let table = font.table()?;
     let (outlines, scale) = (*table.outlines(), font.scale());
     let sizes = scale.sizes();
-    let shared_moves = |axis: usize, number: usize, sizes: Range<usize>| {
-        font.shared_moves(&outlines, axis, number, sizes, &mut Vec::new())
+    let shared_moves = |axis: usize, number: usize, sizes: Range<usize>, memory: &mut Vec<u16>| {
+        font.shared_moves(&outlines, axis, number, sizes, memory)
     };
     let shared = Shared { levels: outlines.levels(), moves: &shared_moves };
     for glyph in table.gids().map(u32::from).filter(|glyph| outlines.find(*glyph).is_some()) {
@@ -145,8 +141,7 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
                 Ok(())
             })
         } else {
-            let mut points = OutlinePoints::default();
-            read_outline(font, glyph, &mut points)?;
+            let points = read_outline(font, glyph)?;
             let known = Known { points: &points, advance: font.advance_units(glyph), scale, shared };
             decode(message, &known, 0..sizes, &mut Vec::new()).and_then(|(mut weights, mut sources)| {
                 code(model, &known, &mut weights, &mut sources, 0..sizes, &mut |question| {
@@ -159,7 +154,7 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     for (axis, levels) in outlines.levels().into_iter().enumerate() {
         for (number, level) in levels.iter().enumerate() {
             model.forget();
-            let mut moves = shared_moves(axis, number, 0..sizes).map_err(|damage| damage.of(0))?;
+            let mut moves = shared_moves(axis, number, 0..sizes, &mut Vec::new()).map_err(|damage| damage.of(0))?;
             code_shared(model, level.get(), &mut moves, scale, 0..sizes).map_err(|damage| damage.of(0))?;
         }
     }

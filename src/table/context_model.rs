@@ -37,14 +37,25 @@ impl<'p, C: Coder> ContextModel<'p, C> {
         Self { coder, prior: *prior, slots }
     }
 
-    /// The model's memory, for another one.
-    pub(super) fn into_memory(self) -> Vec<u16> {
+    /// The model's memory, for another one, empty.
+    pub(super) fn into_memory(mut self) -> Vec<u16> {
+        self.slots.clear();
         self.slots
     }
 
     /// Goes back to the initial state, for another message.
     pub fn forget(&mut self) {
-        self.slots.copy_from_slice(self.prior.slots);
+        self.slots.clear();
+        self.slots.extend_from_slice(self.prior.slots);
+    }
+
+    /// Lends the memory to another model, and is in the initial state then if that model leaves it empty.
+    pub(super) fn lend<T>(&mut self, f: impl FnOnce(&mut Vec<u16>) -> T) -> T {
+        let given = f(&mut self.slots);
+        if self.slots.len() != self.prior.slots.len() {
+            self.forget();
+        }
+        given
     }
 
     /// The probability of a bin that is 1, in 1/4096, before it is coded.

@@ -55,14 +55,6 @@ impl OutlinePoints {
     pub fn memory(&self) -> usize {
         self.len() * (2 * size_of::<i16>() + size_of::<bool>()) + self.ends.len() * size_of::<u16>()
     }
-
-    /// Removes all points, and keeps their memory.
-    pub fn clear(&mut self) {
-        self.coordinates.iter_mut().for_each(Vec::clear);
-        self.on_curve.clear();
-        self.ends.clear();
-        self.is_unfit = false;
-    }
 }
 
 impl OutlinePoints {

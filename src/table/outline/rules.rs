@@ -25,9 +25,9 @@ const ROOM: usize = LANES.next_power_of_two();
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Neighbours {
     /// The track below.
-    pub(super) lower: Option<usize>,
+    pub(super) lower: Option<u8>,
     /// The track above.
-    pub(super) upper: Option<usize>,
+    pub(super) upper: Option<u8>,
 }
 
 impl Neighbours {
@@ -39,17 +39,17 @@ impl Neighbours {
 
 /// The order in which tracks are coded: the lowest, the highest, and then the middle of each gap, which
 /// makes two gaps at the end of the line.
-pub(super) fn coding_order(count: usize) -> Vec<(usize, Neighbours)> {
-    let mut order = Vec::with_capacity(count);
+pub(super) fn coding_order(count: u8) -> Vec<(u8, Neighbours)> {
+    let mut order = Vec::with_capacity(count.into());
     if count > 0 {
         order.push((0, Neighbours::default()));
     }
     if count > 1 {
         order.push((count - 1, Neighbours { lower: Some(0), upper: None }));
     }
-    let split = |order: &mut Vec<_>, lower: usize, upper: usize| {
+    let split = |order: &mut Vec<_>, lower: u8, upper: u8| {
         if upper - lower > 1 {
-            order.push(((lower + upper) / 2, Neighbours { lower: Some(lower), upper: Some(upper) }));
+            order.push((lower.midpoint(upper), Neighbours { lower: Some(lower), upper: Some(upper) }));
         }
     };
     split(&mut order, 0, count.saturating_sub(1));
@@ -153,21 +153,22 @@ impl View<'_> {
             valid |= SHARED;
             at[3] = plain.wrapping_add(moved.into());
         }
-        if let (2.., Some(a)) = (N, neighbours.lower) {
+        let [lower, upper] = [neighbours.lower, neighbours.upper].map(|track| track.map(usize::from));
+        if let (2.., Some(a)) = (N, lower) {
             valid |= LOWER;
             let (hinted, apart) = (self.hinted[a], plain.wrapping_sub(self.plain[a]));
             at[4] = hinted.wrapping_add(to_grid(apart));
             at[5] = hinted.wrapping_add(apart);
             at[6] = hinted.wrapping_add(own.wrapping_sub(before(a)));
         }
-        if let (3.., Some(b)) = (N, neighbours.upper) {
+        if let (3.., Some(b)) = (N, upper) {
             valid |= UPPER;
             let (hinted, apart) = (self.hinted[b], self.plain[b].wrapping_sub(plain));
             at[8] = hinted.wrapping_sub(to_grid(apart));
             at[9] = hinted.wrapping_sub(apart);
             at[10] = hinted.wrapping_sub(before(b).wrapping_sub(own));
         }
-        if let (3.., Some(a), Some(b)) = (N, neighbours.lower, neighbours.upper) {
+        if let (3.., Some(a), Some(b)) = (N, lower, upper) {
             let ends = [a, b].map(|k| (i32::from(self.levels[k]), self.plain[k], self.hinted[k]));
             at[7] = interpolated(ends, self.levels[track].into(), plain);
         }
