@@ -207,7 +207,7 @@ fn equal<const N: usize>(lanes: [i32x4; N], number: i32) -> [i32x4; N] {
 
 /// How often each rule was right, in 1/65536.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scores([i32x4; GROUPS]);
+pub(super) struct Scores([u16; LANES]);
 
 /// The initial scores by the kind of neighbours, in 1/256.
 const INITIAL: [[u8; RULES]; 3] = [
@@ -218,11 +218,17 @@ const INITIAL: [[u8; RULES]; 3] = [
 
 impl Scores {
     pub(super) fn new(kind: usize) -> Self {
-        let mut scores = [0; ROOM];
+        let mut scores = [0; LANES];
         for (score, initial) in scores.iter_mut().zip(INITIAL[kind]) {
-            *score = i32::from(initial) << 8;
+            *score = u16::from(initial) << 8;
         }
-        Self(lanes(&scores))
+        Self(scores)
+    }
+
+    /// Those of four rules.
+    #[inline(always)]
+    fn group(&self, group: usize) -> i32x4 {
+        i32x4::new([0, 1, 2, 3].map(|lane| self.0[(4 * group + lane) % LANES].into()))
     }
 
     /// Groups the rules by their positions.
@@ -230,7 +236,7 @@ impl Scores {
     pub(super) fn rank<const N: usize>(&self, rules: &Rules<N>, ranked: &mut Ranked) {
         let (positions, valid): ([_; N], [_; N]) = (rules.lanes(), rules.valid());
         let weights: [i32x4; N] =
-            core::array::from_fn(|group| (self.0[group % GROUPS] + i32x4::splat(1)) & valid[group]);
+            core::array::from_fn(|group| (self.group(group) + i32x4::splat(1)) & valid[group]);
         let mut left = VALID[rules.valid % VALID.len()].bits;
         (ranked.count, ranked.selected, ranked.total) = (0, 0, 0);
         for place in &mut ranked.places {
@@ -256,25 +262,24 @@ impl Scores {
     pub(super) fn update<const N: usize>(&mut self, rules: &Rules<N>, position: i32) {
         let (equal, valid) = (equal(rules.lanes(), position), rules.valid());
         for (group, (equal, valid)) in equal.into_iter().zip(valid).enumerate() {
-            let scores = &mut self.0[group % GROUPS];
-            let more = (i32x4::splat(ALWAYS) - *scores) >> SCORE_RATE;
-            let less = i32x4::splat(0) - (*scores >> SCORE_RATE);
-            *scores += valid & (equal & more | !equal & less);
+            let scores = self.group(group);
+            let more = (i32x4::splat(ALWAYS) - scores) >> SCORE_RATE;
+            let less = i32x4::splat(0) - (scores >> SCORE_RATE);
+            let scores = scores + (valid & (equal & more | !equal & less));
+            for (lane, score) in scores.to_array().into_iter().enumerate() {
+                self.0[(4 * group + lane) % LANES] = score as u16;
+            }
         }
     }
 
     /// The rule with the highest score among some, and that score. `rules` has a bit for each.
     #[inline(always)]
     fn best(&self, rules: u32) -> (usize, u16) {
-        let mut scores = [0; ROOM];
-        for (to, from) in scores.chunks_exact_mut(4).zip(self.0) {
-            to.copy_from_slice(&from.to_array());
-        }
         let (mut best, mut score, mut left) = (0, -1, rules);
         while left != 0 {
-            let rule = left.trailing_zeros() as usize % ROOM;
+            let rule = left.trailing_zeros() as usize;
             left &= left - 1;
-            let own = scores[rule];
+            let own = self.0.get(rule).map_or(0, |score| i32::from(*score));
             (best, score) = if own > score { (rule, own) } else { (best, score) };
         }
         (best, score as u16)
