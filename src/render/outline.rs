@@ -141,7 +141,7 @@ pub(super) fn draw_polygons<'b>(
         let area = &mut scratch.area;
         budget.spend(area.most_steps(polygons.vertices[0].len()))?;
         let corner = [strip.left * UNIT - offset[0], bottom];
-        if strip.is_whole {
+        if strip.is_whole && !cfg!(feature = "small") {
             fill::<false>(area, polygons, corner);
         } else {
             fill::<true>(area, polygons, corner);

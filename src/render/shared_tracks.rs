@@ -48,8 +48,12 @@ impl SharedTracks {
         }
         let at = (2 * number + axis) % KEPT;
         let (place, moves) = (&mut self.places[at], &mut self.moves[at * self.room..][..sizes.len()]);
-        let wanted =
-            Place { number: number as u16, axis: axis as u8, first_size: sizes.start as u16, count: place.count };
+        let wanted = Place {
+            number: number as u16,
+            axis: axis as u8,
+            first_size: sizes.start as u16,
+            count: place.count,
+        };
         if *place == wanted && usize::from(place.count) >= sizes.len() {
             return Ok(moves.to_vec());
         }

@@ -154,7 +154,8 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     for (axis, levels) in outlines.levels().into_iter().enumerate() {
         for (number, level) in levels.iter().enumerate() {
             model.forget();
-            let mut moves = shared_moves(axis, number, 0..sizes, &mut Vec::new()).map_err(|damage| damage.of(0))?;
+            let mut moves =
+                shared_moves(axis, number, 0..sizes, &mut Vec::new()).map_err(|damage| damage.of(0))?;
             code_shared(model, level.get(), &mut moves, scale, 0..sizes).map_err(|damage| damage.of(0))?;
         }
     }

@@ -203,7 +203,8 @@ fn shared_moves<'s, C: Coder>(
     let mut moves = alloc::vec![0; sources.len() * sizes.len()];
     for (moves, source) in moves.chunks_exact_mut(sizes.len().max(1)).zip(sources) {
         if let Source::Same(number) | Source::Near(number) = *source {
-            let shared = model.lend(|memory| (known.shared.moves)(axis, number.into(), sizes.clone(), memory))?;
+            let shared =
+                model.lend(|memory| (known.shared.moves)(axis, number.into(), sizes.clone(), memory))?;
             let shared = shared.get(..moves.len()).ok_or(malformed("refers to no shared track"))?;
             moves.copy_from_slice(shared);
         }

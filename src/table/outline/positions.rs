@@ -4,8 +4,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::shared::Source;
 use super::rules::{Candidate, Neighbours, Ranked, Scores, View, coding_order, to_grid};
+use super::shared::Source;
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
 use crate::table::elements::{HIT, MISS_FRACTION, MISS_PIXELS};
@@ -160,6 +160,7 @@ impl Track {
     ) -> (i16, bool) {
         // The lowest and the highest track have few rules.
         match self.neighbours.kind() {
+            _ if cfg!(feature = "small") => self.code_by::<C, 3>(model, view, at, ranked, moved, choose),
             0 => self.code_by::<C, 1>(model, view, at, ranked, moved, choose),
             1 => self.code_by::<C, 2>(model, view, at, ranked, moved, choose),
             _ => self.code_by::<C, 3>(model, view, at, ranked, moved, choose),

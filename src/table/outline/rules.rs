@@ -127,7 +127,7 @@ struct Valid {
     /// A bit for each rule.
     bits: u32,
     /// The same as masks.
-    lanes: [i32; ROOM],
+    lanes: [i8; ROOM],
 }
 
 impl View<'_> {
@@ -191,11 +191,8 @@ impl<const N: usize> Rules<N> {
 }
 
 #[inline(always)]
-fn lanes<const N: usize>(from: &[i32; ROOM]) -> [i32x4; N] {
-    core::array::from_fn(|group| {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|lane| from[(4 * group + lane) % ROOM]);
-        i32x4::new([a, b, c, d])
-    })
+fn lanes<const N: usize, T: Copy + Into<i32>>(from: &[T; ROOM]) -> [i32x4; N] {
+    core::array::from_fn(|group| i32x4::new([0, 1, 2, 3].map(|lane| from[(4 * group + lane) % ROOM].into())))
 }
 
 /// For each lane with this number, all bits.

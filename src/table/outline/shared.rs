@@ -22,8 +22,7 @@ pub enum Source {
 }
 
 /// Gives the moves of a shared track, by its axis and its number, at some sizes. It is lent working memory.
-pub type SharedMoves<'a> =
-    dyn Fn(usize, usize, Range<usize>, &mut Vec<u16>) -> Result<Vec<i16>, Damage> + 'a;
+pub type SharedMoves<'a> = dyn Fn(usize, usize, Range<usize>, &mut Vec<u16>) -> Result<Vec<i16>, Damage> + 'a;
 
 /// The shared tracks of a font, along x and y.
 #[derive(Clone, Copy)]
