@@ -44,17 +44,19 @@ fn sort(keys: &mut [u32]) {
 /// The numbers of an outline's points by their coordinates along an axis, and its levels, ascending.
 fn levels(points: &OutlinePoints, axis: usize) -> (Vec<u16>, Vec<Level>) {
     // Sorted as numbers: coordinates from 0 up, then points.
-    let key = |(point, units): (u16, &i16)| u32::from(*units as u16 ^ 0x8000) << 16 | u32::from(point);
-    let mut keys: Vec<u32> = (0u16..).zip(&points.coordinates[axis]).map(key).collect();
+    let key = |(point, units): (usize, &i16)| u32::from(*units as u16 ^ 0x8000) << 16 | point as u32;
+    let mut keys: Vec<u32> = points.coordinates[axis].iter().enumerate().map(key).collect();
     if cfg!(feature = "small") {
-        sort(&mut keys)
+        sort(&mut keys);
     } else {
-        keys.sort_unstable()
+        keys.sort_unstable();
     }
     let mut order = Vec::with_capacity(keys.len());
     let mut levels: Vec<Level> = Vec::with_capacity(keys.len());
     let mut level_of = vec![0u16; keys.len()];
-    for (at, key) in (0..).zip(&keys) {
+    for (at, key) in keys.iter().enumerate() {
+        // Outlines have 65535 points at most.
+        let at = at as u16;
         let (units, point) = (((key >> 16) ^ 0x8000) as i16, *key as u16);
         if levels.last().is_none_or(|level| level.units != units) {
             levels.push(Level { units, points: at..at, extreme: 0, on_curve: 0, is_flat: false });
