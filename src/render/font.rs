@@ -6,11 +6,13 @@ use core::ops::Range;
 
 use read_fonts::FontRef;
 use read_fonts::tables::cmap::Cmap;
+use read_fonts::tables::hmtx::Hmtx;
 use read_fonts::types::GlyphId;
 
 use super::charmap::{characters, glyph_of, glyph_of_variation};
+use super::glyf::Outlines;
 use super::metrics::LineMetrics;
-use super::tables::{OutlineTables, Tables, malformed, table_range};
+use super::tables::{Tables, malformed, table_range};
 use crate::error::Error;
 use crate::model::sizes::Scale;
 use crate::table::{self, Header, Table};
@@ -196,9 +198,9 @@ impl Font {
         self.0.tables.glyf(self.data())
     }
 
-    /// What outlines are read from. None in a font that has none.
-    pub(super) fn outline_tables(&self) -> Option<OutlineTables<'_>> {
-        self.0.tables.outlines(self.data())
+    /// The outlines, and what places them. None in a font that has none.
+    pub(super) fn outline_tables(&self) -> Option<(Outlines<'_>, Hmtx<'_>)> {
+        Some((self.0.tables.outlines(self.data())?, self.0.tables.hmtx(self.data())?))
     }
 
     /// A glyph's advance width in font units; 0 for a glyph that the font does not have.

@@ -1,12 +1,15 @@
 //! From a font to pixels.
 
 mod area;
+mod bytes;
 mod charmap;
+mod component;
 mod decoder;
 #[cfg(feature = "fields")]
 mod draw;
 mod flatten;
 mod font;
+mod glyf;
 mod glyph;
 mod lcd;
 mod metrics;

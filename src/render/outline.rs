@@ -1,20 +1,12 @@
 //! Drawing outlines, with hints or without: they are hinted at a size, flattened and filled.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
-use read_fonts::model::glyph::outline::UnscaledOutlineSink;
-use read_fonts::tables::glyf::PointFlags;
-use read_fonts::tables::glyf::outline::{Buffers, OutlinePlan, Unscaled};
-use read_fonts::types::{GlyphId, Point};
-
 use super::area::Area;
-
 use super::flatten::{FINE, FLAT, Polygons};
 use super::font::Font;
 use super::scratch::Scratch;
 use super::strips::{STRIP, in_strips};
-use super::tables::OutlineTables;
 use crate::bitmap::Canvas;
 use crate::constants::MAX_SIDE;
 use crate::error::Error;
@@ -25,49 +17,17 @@ use crate::number::{UNIT, UNIT_BITS, round};
 use crate::options::DrawOptions;
 use crate::placement::Placement;
 
-/// Reads the outline of a glyph of a font into `points`.
+/// Reads the outline of a glyph of a font.
 ///
 /// # Errors
 ///
 /// `NoSuchGlyph`, `MalformedOutline`.
-pub(super) fn read_outline(font: &Font, glyph: u32, points: &mut OutlinePoints) -> Result<(), Error> {
+pub(super) fn read_outline(font: &Font, glyph: u32) -> Result<OutlinePoints, Error> {
     if glyph >= font.glyph_count() {
         return Err(Error::NoSuchGlyph(glyph));
     }
-    points.clear();
-    let read = font.outline_tables().and_then(|tables| load(&tables, GlyphId::new(glyph), points));
-    if read.is_some() && !points.is_unfit { Ok(()) } else { Err(Error::MalformedOutline(glyph)) }
-}
-
-/// Adds the points of a glyph, components resolved. None if they cannot be read; a blank glyph has no points.
-fn load(tables: &OutlineTables<'_>, glyph: GlyphId, points: &mut OutlinePoints) -> Option<()> {
-    let plan = OutlinePlan::new(tables, glyph).ok()?;
-    let lengths = plan.buffer_lengths::<Unscaled>();
-    let count = lengths.points as usize;
-    let (mut places, mut flags) = (vec![Point::default(); count], vec![PointFlags::default(); count]);
-    let mut ends = vec![0; lengths.contours as usize];
-    let buffers = Buffers {
-        points: &mut places,
-        flags: &mut flags,
-        contours: &mut ends,
-        unscaled: &mut [],
-        deltas: &mut [],
-        iup: &mut [],
-        composite_deltas: &mut [],
-    };
-    let outline = plan.load(tables, &Unscaled, buffers, None).ok()?;
-    let mut start = 0;
-    for &end in outline.contours() {
-        let contour = start..usize::from(end) + 1;
-        let (places, flags) = (outline.points().get(contour.clone())?, outline.flags().get(contour.clone())?);
-        places
-            .iter()
-            .zip(flags)
-            .for_each(|(place, flags)| points.point(place.x, place.y, flags.without_markers()));
-        points.end_contour();
-        start = contour.end;
-    }
-    Some(())
+    let read = font.outline_tables().and_then(|(outlines, hmtx)| outlines.load(&hmtx, glyph));
+    read.filter(|points| !points.is_unfit).ok_or(Error::MalformedOutline(glyph))
 }
 
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.
@@ -80,9 +40,7 @@ pub(super) fn draw_plain<'b>(
     room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
 ) -> Result<Option<Placement>, Error> {
     let options = options.checked()?;
-    let mut points = OutlinePoints::default();
-    read_outline(font, glyph, &mut points)?;
-    let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0..0);
+    let model = OutlineModel::new(read_outline(font, glyph)?, OutlineWeights::default(), font.scale(), 0..0);
     let model = model.map_err(|damage| damage.of(glyph))?;
     let size = HintedSize::plain(options.ppem);
     let room = |placement: Placement| {
@@ -183,7 +141,7 @@ pub(super) fn draw_polygons<'b>(
         let area = &mut scratch.area;
         budget.spend(area.most_steps(polygons.vertices[0].len()))?;
         let corner = [strip.left * UNIT - offset[0], bottom];
-        if strip.is_whole {
+        if strip.is_whole && !cfg!(feature = "small") {
             fill::<false>(area, polygons, corner);
         } else {
             fill::<true>(area, polygons, corner);

@@ -265,7 +265,7 @@ struct Cache {
     bytes: usize,
     clock: u64,
     /// For each glyph of the font, its index in `entries` plus 1; 0 for one that is not cached.
-    indices: Vec<u32>,
+    indices: Vec<u16>,
     entries: Vec<Entry>,
 }
 
@@ -307,7 +307,7 @@ impl Cache {
     }
 
     fn find(&self, glyph: u32) -> Option<usize> {
-        (*self.indices.get(glyph as usize)? as usize).checked_sub(1)
+        usize::from(*self.indices.get(glyph as usize)?).checked_sub(1)
     }
 
     fn load(&mut self, decoder: &mut Decoder, glyph: u32, sizes: Range<usize>) -> Result<usize, Error> {
@@ -322,7 +322,7 @@ impl Cache {
         if self.indices.len() <= glyph as usize {
             self.indices.resize(glyph as usize + 1, 0);
         }
-        self.indices[glyph as usize] = self.entries.len() as u32;
+        self.indices[glyph as usize] = self.entries.len() as u16;
         Ok(self.entries.len() - 1)
     }
 
@@ -346,7 +346,7 @@ impl Cache {
         self.bytes -= entry.memory();
         self.indices[entry.glyph as usize] = 0;
         if let Some(moved) = self.entries.get(at) {
-            self.indices[moved.glyph as usize] = at as u32 + 1;
+            self.indices[moved.glyph as usize] = at as u16 + 1;
         }
     }
 }

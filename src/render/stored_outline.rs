@@ -5,16 +5,17 @@ use core::cell::RefCell;
 use core::ops::Range;
 
 use read_fonts::tables::glyf::Glyf;
-use read_fonts::tables::glyf::{Anchor, CompositeGlyphFlags, Glyph};
 use read_fonts::tables::loca::Loca;
 
+use super::component::Component;
 use super::font::Font;
+use super::glyf::{Outline, Outlines};
 use super::outline::read_outline;
 use super::shared_tracks::SharedTracks;
 use crate::error::{Damage, Error};
 use crate::limits::Limits;
 use crate::model::compose::Part;
-use crate::model::outline::{OutlineModel, OutlinePoints};
+use crate::model::outline::OutlineModel;
 use crate::table::MAX_PARTS;
 use crate::table::context_model::ContextModel;
 use crate::table::outline::{
@@ -31,7 +32,6 @@ const MAX_DEPTH: usize = 16;
 pub(super) struct Memory {
     tracks: SharedTracks,
     /// Working memory.
-    points: OutlinePoints,
     slots: Vec<u16>,
 }
 
@@ -47,12 +47,10 @@ impl Font {
         let table = self.table()?;
         let (outlines, scale) = (*table.outlines(), self.scale());
         let message = outlines.glyph(glyph)?;
-        read_outline(self, glyph, &mut memory.points)?;
-        let points = memory.points.clone();
+        let points = read_outline(self, glyph)?;
         let tracks = RefCell::new(&mut memory.tracks);
-        let moves = |axis: usize, number: usize, sizes: Range<usize>| {
-            let decode =
-                |memory: &mut Vec<u16>| self.shared_moves(&outlines, axis, number, sizes.clone(), memory);
+        let moves = |axis: usize, number: usize, sizes: Range<usize>, memory: &mut Vec<u16>| {
+            let decode = || self.shared_moves(&outlines, axis, number, sizes.clone(), memory);
             tracks.borrow_mut().moves(axis, number, sizes.clone(), decode)
         };
         let shared = Shared { levels: outlines.levels(), moves: &moves };
@@ -105,8 +103,7 @@ impl Font {
         let parts = self.components(glyph).map(|parts| plain_parts(&parts));
         let advance = self.advance_units(glyph);
         let outline_hash = || {
-            let mut points = OutlinePoints::default();
-            read_outline(self, glyph, &mut points).ok()?;
+            let points = read_outline(self, glyph).ok()?;
             Some(points.hash(advance))
         };
         f(&KnownGlyph { parts: parts.as_deref(), advance, outline_hash: &outline_hash })
@@ -114,8 +111,8 @@ impl Font {
 
     /// What a composite glyph of `glyf` consists of.
     fn components(&self, glyph: u32) -> Option<Vec<Part>> {
-        let tables = self.outline_tables()?;
-        components(&tables.loca, &tables.glyf, glyph)
+        let (outlines, _) = self.outline_tables()?;
+        parts_of(&outlines, glyph)
     }
 }
 
@@ -129,8 +126,8 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     let table = font.table()?;
     let (outlines, scale) = (*table.outlines(), font.scale());
     let sizes = scale.sizes();
-    let shared_moves = |axis: usize, number: usize, sizes: Range<usize>| {
-        font.shared_moves(&outlines, axis, number, sizes, &mut Vec::new())
+    let shared_moves = |axis: usize, number: usize, sizes: Range<usize>, memory: &mut Vec<u16>| {
+        font.shared_moves(&outlines, axis, number, sizes, memory)
     };
     let shared = Shared { levels: outlines.levels(), moves: &shared_moves };
     for glyph in table.gids().map(u32::from).filter(|glyph| outlines.find(*glyph).is_some()) {
@@ -144,8 +141,7 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
                 Ok(())
             })
         } else {
-            let mut points = OutlinePoints::default();
-            read_outline(font, glyph, &mut points)?;
+            let points = read_outline(font, glyph)?;
             let known = Known { points: &points, advance: font.advance_units(glyph), scale, shared };
             decode(message, &known, 0..sizes, &mut Vec::new()).and_then(|(mut weights, mut sources)| {
                 code(model, &known, &mut weights, &mut sources, 0..sizes, &mut |question| {
@@ -158,7 +154,8 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
     for (axis, levels) in outlines.levels().into_iter().enumerate() {
         for (number, level) in levels.iter().enumerate() {
             model.forget();
-            let mut moves = shared_moves(axis, number, 0..sizes).map_err(|damage| damage.of(0))?;
+            let mut moves =
+                shared_moves(axis, number, 0..sizes, &mut Vec::new()).map_err(|damage| damage.of(0))?;
             code_shared(model, level.get(), &mut moves, scale, 0..sizes).map_err(|damage| damage.of(0))?;
         }
     }
@@ -172,11 +169,15 @@ pub fn recode_outlines<C: Coder>(font: &Font, model: &mut ContextModel<'_, C>) -
 /// The simple glyphs that a composite glyph of `glyf` consists of, with their offsets in font units. None for a simple glyph, for
 /// one whose components are scaled or attached to points, and for one that has too many or cannot be read.
 pub fn components(loca: &Loca<'_>, glyf: &Glyf<'_>, glyph: u32) -> Option<Vec<Part>> {
-    if let Some(Glyph::Simple(_)) | None = loca.get_glyf(glyph.into(), glyf).ok()? {
+    parts_of(&Outlines { glyf: glyf.offset_data().as_bytes(), loca: loca.clone() }, glyph)
+}
+
+fn parts_of(outlines: &Outlines<'_>, glyph: u32) -> Option<Vec<Part>> {
+    if let Outline::Blank | Outline::Simple { .. } = outlines.get(glyph)? {
         return None;
     }
     let mut found = Found { parts: Vec::new(), steps: 0 };
-    collect((loca, glyf), glyph, [0; 2], MAX_DEPTH, &mut found)?;
+    collect(outlines, glyph, [0; 2], MAX_DEPTH, &mut found)?;
     Some(found.parts)
 }
 
@@ -191,7 +192,7 @@ struct Found {
 const MAX_STEPS: usize = 256;
 
 fn collect(
-    tables: (&Loca<'_>, &Glyf<'_>),
+    outlines: &Outlines<'_>,
     glyph: u32,
     offset: [i16; 2],
     depth: usize,
@@ -201,25 +202,20 @@ fn collect(
     if found.steps > MAX_STEPS {
         return None;
     }
-    let scaled = CompositeGlyphFlags::WE_HAVE_A_SCALE
-        | CompositeGlyphFlags::WE_HAVE_AN_X_AND_Y_SCALE
-        | CompositeGlyphFlags::WE_HAVE_A_TWO_BY_TWO;
-    match tables.0.get_glyf(glyph.into(), tables.1).ok()? {
-        Some(Glyph::Simple(_)) if found.parts.len() < MAX_PARTS => {
+    match outlines.get(glyph)? {
+        Outline::Blank => {}
+        Outline::Simple { .. } if found.parts.len() < MAX_PARTS => {
             found.parts.push(Part { gid: glyph.try_into().ok()?, offset, ..Part::default() });
         }
-        Some(Glyph::Simple(_)) => return None,
-        Some(Glyph::Composite(composite)) => {
-            for component in composite.components() {
-                let Anchor::Offset { x, y } = component.anchor else { return None };
-                if component.flags.intersects(scaled) {
-                    return None;
-                }
-                let offset = [offset[0].checked_add(x)?, offset[1].checked_add(y)?];
-                collect(tables, component.glyph.to_u32(), offset, depth.checked_sub(1)?, found)?;
+        Outline::Simple { .. } => return None,
+        Outline::Composite { bytes, .. } => {
+            for component in Component::list(bytes) {
+                let component = component?;
+                let [x, y] = component.offset().filter(|_| !component.is_scaled())?;
+                let offset = [offset[0].checked_add(x as i16)?, offset[1].checked_add(y as i16)?];
+                collect(outlines, component.glyph, offset, depth.checked_sub(1)?, found)?;
             }
         }
-        None => {}
     }
     Some(())
 }

@@ -3,16 +3,14 @@
 use core::ops::Range;
 
 use read_fonts::tables::cmap::Cmap;
-use read_fonts::tables::glyf::outline::OutlineContext;
-use read_fonts::tables::glyf::{Glyf, PHANTOM_POINT_COUNT};
-use read_fonts::tables::gvar::GlyphVariationData;
 use read_fonts::tables::head::Flags;
 use read_fonts::tables::hmtx::Hmtx;
-use read_fonts::tables::loca::{Loca, LocaGlyph};
-use read_fonts::types::{Fixed, GlyphId, Point, Tag};
+use read_fonts::tables::loca::Loca;
+use read_fonts::types::Tag;
 use read_fonts::{FontData, FontRead, FontRef, TableProvider};
 
 use super::charmap::is_readable;
+use super::glyf::Outlines;
 use crate::error::Error;
 
 /// Where tables are in a file.
@@ -69,15 +67,11 @@ impl Tables {
         data.get(glyf.clone())
     }
 
-    /// What outlines are read from.
-    pub(super) fn outlines<'a>(&self, data: &'a [u8]) -> Option<OutlineTables<'a>> {
+    /// The outlines.
+    pub(super) fn outlines<'a>(&self, data: &'a [u8]) -> Option<Outlines<'a>> {
         let (_, loca, is_long) = self.outlines.as_ref()?;
-        Some(OutlineTables {
-            glyf: Glyf::read(FontData::new(self.glyf(data)?)).ok()?,
-            loca: Loca::read_with_args(FontData::new(data.get(loca.clone())?), *is_long).ok()?,
-            hmtx: self.hmtx(data)?,
-            units_per_em: self.units_per_em,
-        })
+        let loca = Loca::read_with_args(FontData::new(data.get(loca.clone())?), *is_long).ok()?;
+        Some(Outlines { glyf: self.glyf(data)?, loca })
     }
 
     /// Advance widths and side bearings.
@@ -88,46 +82,6 @@ impl Tables {
     /// The character map.
     pub(super) fn cmap<'a>(&self, data: &'a [u8]) -> Option<Cmap<'a>> {
         Cmap::read(FontData::new(data.get(self.cmap.clone()?)?)).ok()
-    }
-}
-
-/// What outlines are read from.
-pub(super) struct OutlineTables<'a> {
-    pub(super) glyf: Glyf<'a>,
-    pub(super) loca: Loca<'a>,
-    hmtx: Hmtx<'a>,
-    units_per_em: u16,
-}
-
-/// A font that does not vary.
-impl<'a> OutlineContext<'a> for OutlineTables<'a> {
-    fn glyph(&self, glyph: GlyphId) -> Option<LocaGlyph<'a>> {
-        self.loca.get(glyph, &self.glyf)
-    }
-
-    fn glyph_variation_data(&self, _: GlyphId) -> Option<GlyphVariationData<'a>> {
-        None
-    }
-
-    fn has_gvar(&self) -> bool {
-        false
-    }
-
-    fn phantom_point_deltas(&self, _: GlyphId) -> Option<[Point<Fixed>; PHANTOM_POINT_COUNT]> {
-        None
-    }
-
-    fn units_per_em(&self) -> u16 {
-        self.units_per_em
-    }
-
-    fn h_metrics(&self, glyph: GlyphId) -> (i32, i32) {
-        let bearing = self.hmtx.side_bearing(glyph).unwrap_or_default();
-        (bearing.into(), self.hmtx.advance(glyph).unwrap_or_default().into())
-    }
-
-    fn h_line_metrics(&self) -> (i32, i32) {
-        (0, 0)
     }
 }
 

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use super::damage::malformed;
 use super::elements::{Element, SUFFIX_LENGTHS};
-use super::logistic::{STRETCH, squash};
+use super::logistic::{squash, stretch};
 use super::priors::Prior;
 use super::range::{Coder, ONE};
 use crate::error::Damage;
@@ -37,14 +37,25 @@ impl<'p, C: Coder> ContextModel<'p, C> {
         Self { coder, prior: *prior, slots }
     }
 
-    /// The model's memory, for another one.
-    pub(super) fn into_memory(self) -> Vec<u16> {
+    /// The model's memory, for another one, empty.
+    pub(super) fn into_memory(mut self) -> Vec<u16> {
+        self.slots.clear();
         self.slots
     }
 
     /// Goes back to the initial state, for another message.
     pub fn forget(&mut self) {
-        self.slots.copy_from_slice(self.prior.slots);
+        self.slots.clear();
+        self.slots.extend_from_slice(self.prior.slots);
+    }
+
+    /// Lends the memory to another model, and is in the initial state then if that model leaves it empty.
+    pub(super) fn lend<T>(&mut self, f: impl FnOnce(&mut Vec<u16>) -> T) -> T {
+        let given = f(&mut self.slots);
+        if self.slots.len() != self.prior.slots.len() {
+            self.forget();
+        }
+        given
     }
 
     /// The probability of a bin that is 1, in 1/4096, before it is coded.
@@ -59,7 +70,7 @@ impl<'p, C: Coder> ContextModel<'p, C> {
         let slots = [contexts[0], a + contexts[1], a + b + contexts[2]];
         let terms = slots.into_iter().zip(weights).map(|(context, weight)| {
             let slot = element.first_slot + context * element.bins + bin;
-            i32::from(STRETCH[usize::from(self.slots[slot] >> 4)]) * i32::from(weight)
+            stretch(u32::from(self.slots[slot] >> 4)) * i32::from(weight)
         });
         squash((terms.sum::<i32>() + 16) >> 5).clamp(1, ONE - 1)
     }
@@ -79,7 +90,7 @@ impl<'p, C: Coder> ContextModel<'p, C> {
         let slots = [contexts[0], a + contexts[1], a + b + contexts[2]]
             .map(|context| element.first_slot + context * element.bins + bin);
         let mixer = element.first_mixer + bin;
-        let stretched = slots.map(|slot| i32::from(STRETCH[usize::from(self.slots[slot] >> 4)]));
+        let stretched = slots.map(|slot| stretch(u32::from(self.slots[slot] >> 4)));
         let weights = self.prior.weights[mixer].map(i32::from);
         let sum = stretched[0] * weights[0] + stretched[1] * weights[1] + stretched[2] * weights[2];
         let probability = squash((sum + 16) >> 5).clamp(1, ONE - 1);

@@ -21,18 +21,41 @@ pub const fn squash(stretched: i32) -> u32 {
 }
 
 /// Its inverse, from probabilities to the logistic domain: the least number with at least that probability.
-pub static STRETCH: [i16; ONE as usize] = {
-    let mut table = [2047; ONE as usize];
-    let (mut stretched, mut probability) = (-2047, 0);
-    while probability < ONE {
-        while stretched < 2047 && squash(stretched) < probability {
-            stretched += 1;
+#[cfg(not(feature = "small"))]
+#[inline(always)]
+pub fn stretch(probability: u32) -> i32 {
+    static TABLE: [i16; ONE as usize] = {
+        let (mut table, mut probability) = ([0; ONE as usize], 0);
+        while probability < ONE {
+            table[probability as usize] = inverse(probability) as i16;
+            probability += 1;
         }
-        table[probability as usize] = stretched as i16;
-        probability += 1;
+        table
+    };
+    TABLE[(probability % ONE) as usize].into()
+}
+
+#[cfg(feature = "small")]
+pub use inverse as stretch;
+
+/// The inverse, computed: one division in place of a table of 8 kB.
+pub const fn inverse(probability: u32) -> i32 {
+    let wanted = probability as i32;
+    if wanted <= CURVE[0] {
+        return -2047;
     }
-    table
-};
+    // The last point of the curve that is below.
+    let (mut at, mut step) = (0, 16);
+    while step > 0 {
+        if CURVE[at + step] < wanted {
+            at += step;
+        }
+        step /= 2;
+    }
+    let (rise, height) = (CURVE[at + 1] - CURVE[at], wanted - CURVE[at]);
+    let stretched = ((at as i32 - 16) << 7) + (128 * height - 64 + rise - 1) / rise;
+    if stretched < 2047 { stretched } else { 2047 }
+}
 
 #[cfg(test)]
 mod tests {
@@ -46,12 +69,20 @@ mod tests {
     }
 
     #[test]
+    fn stretching_gives_the_least_number_with_that_probability() {
+        for probability in 0..ONE {
+            let least = (-2047..2047).find(|at| squash(*at) >= probability).unwrap_or(2047);
+            assert_eq!((stretch(probability), inverse(probability)), (least, least), "{probability}");
+        }
+    }
+
+    #[test]
     fn what_is_squashed_is_stretched_back() {
         for probability in 1..ONE - 1 {
-            let back = squash(STRETCH[probability as usize].into());
+            let back = squash(stretch(probability));
             // The curve rises by up to four a step.
             assert!((probability..probability + 4).contains(&back), "{probability} comes back as {back}");
         }
-        assert!(STRETCH.is_sorted());
+        assert!((0..ONE).is_sorted_by_key(stretch));
     }
 }

@@ -55,13 +55,46 @@ impl OutlinePoints {
     pub fn memory(&self) -> usize {
         self.len() * (2 * size_of::<i16>() + size_of::<bool>()) + self.ends.len() * size_of::<u16>()
     }
+}
 
-    /// Removes all points, and keeps their memory.
-    pub fn clear(&mut self) {
-        self.coordinates.iter_mut().for_each(Vec::clear);
-        self.on_curve.clear();
-        self.ends.clear();
-        self.is_unfit = false;
+impl OutlinePoints {
+    /// Makes room for so many more contours and points.
+    pub(crate) fn reserve(&mut self, contours: usize, points: usize) {
+        self.coordinates.iter_mut().for_each(|coordinates| coordinates.reserve_exact(points));
+        self.on_curve.reserve_exact(points);
+        self.ends.reserve_exact(contours);
+    }
+
+    /// Adds a point.
+    #[inline]
+    pub(crate) fn add(&mut self, point: [i32; 2], on_curve: bool) {
+        for (coordinates, v) in self.coordinates.iter_mut().zip(point) {
+            self.is_unfit |= i16::try_from(v).is_err();
+            coordinates.push(v as i16);
+        }
+        self.on_curve.push(on_curve);
+    }
+
+    /// Ends a contour before the point with this number.
+    pub(crate) fn end_contour_at(&mut self, end: usize) {
+        self.is_unfit |= u16::try_from(end).is_err();
+        self.ends.push(end.try_into().unwrap_or(u16::MAX));
+    }
+
+    /// A point.
+    pub(crate) fn at(&self, point: usize) -> Option<[i32; 2]> {
+        let [x, y] = &self.coordinates;
+        Some([(*x.get(point)?).into(), (*y.get(point)?).into()])
+    }
+
+    /// Puts a point somewhere else.
+    pub(crate) fn set(&mut self, point: usize, to: [i32; 2]) {
+        for (coordinates, v) in self.coordinates.iter_mut().zip(to) {
+            self.is_unfit |= i16::try_from(v).is_err();
+            if let Some(coordinate) = coordinates.get_mut(point) {
+                *coordinate = v as i16;
+            }
+        }
     }
 }
 
@@ -69,18 +102,12 @@ impl UnscaledOutlineSink for OutlinePoints {
     fn start_contour(&mut self) {}
 
     fn point(&mut self, x: i32, y: i32, flags: PointFlags) {
-        for (coordinates, v) in self.coordinates.iter_mut().zip([x, y]) {
-            self.is_unfit |= i16::try_from(v).is_err();
-            coordinates.push(v as i16);
-        }
         self.is_unfit |= flags.is_off_curve_cubic();
-        self.on_curve.push(flags.is_on_curve());
+        self.add([x, y], flags.is_on_curve());
     }
 
     fn end_contour(&mut self) {
-        let end = u16::try_from(self.len());
-        self.is_unfit |= end.is_err();
-        self.ends.push(end.unwrap_or(u16::MAX));
+        self.end_contour_at(self.len());
     }
 }
 

@@ -145,15 +145,15 @@ pub fn code<C: Coder>(
     for (hints, corrected) in axes.iter_mut().zip(&corrected) {
         hints.is_hinted = !hints.levels.is_empty() || corrected.is_used;
     }
-    let referred = [0, 1].map(|axis| shared_moves(known, axis, &sources[axis], sizes.clone()));
+    let referred = [0, 1].map(|axis| shared_moves(model, known, axis, &sources[axis], sizes.clone()));
     let [x, y] = referred;
     let referred = [x?, y?];
     let is_coded = has_advances
         || corrected.iter().any(|axis| axis.is_used)
-        || referred.iter().flatten().any(|track| track.is_coded);
+        || sources.iter().flatten().any(|source| matches!(source, Source::Own | Source::Near(_)));
     let message = (Owner::Glyph, is_coded);
     sections::code(model, message, scale.sizes(), sizes.clone(), |model, section| {
-        let mut tracks = [0, 1].map(|axis| Axis::new(axis, &referred[axis], sizes.start));
+        let mut tracks = [0, 1].map(|axis| Axis::new(axis, &referred[axis]));
         corrected.iter_mut().for_each(Corrections::restart);
         let mut before = [0; 2];
         for size in section {
@@ -192,23 +192,24 @@ fn check_moves(tracks: usize, scale: Scale) -> Result<(), Damage> {
     Err(too_large("moves of tracks", (tracks * scale.sizes()) as i32, MAX_MOVES as i32))
 }
 
-/// For each track, the shared one that it refers to.
-fn shared_moves(
+/// What tracks refer to. The model lends its memory, as nothing is coded any more of what has been coded so far.
+fn shared_moves<'s, C: Coder>(
+    model: &mut ContextModel<'_, C>,
     known: &Known<'_>,
     axis: usize,
-    sources: &[Source],
+    sources: &'s [Source],
     sizes: Range<usize>,
-) -> Result<Vec<Referred>, Damage> {
-    let referred = |number: usize, is_coded: bool| {
-        Ok(Referred { moves: Some((known.shared.moves)(axis, number, sizes.clone())?), is_coded })
-    };
-    let moves = |source: &Source| match *source {
-        Source::Own => Ok(Referred::default()),
-        Source::Same(number) => referred(number.into(), false),
-        Source::Near(number) => referred(number.into(), true),
-        Source::Still => Ok(Referred { moves: None, is_coded: false }),
-    };
-    sources.iter().map(moves).collect()
+) -> Result<Referred<'s>, Damage> {
+    let mut moves = alloc::vec![0; sources.len() * sizes.len()];
+    for (moves, source) in moves.chunks_exact_mut(sizes.len().max(1)).zip(sources) {
+        if let Source::Same(number) | Source::Near(number) = *source {
+            let shared =
+                model.lend(|memory| (known.shared.moves)(axis, number.into(), sizes.clone(), memory))?;
+            let shared = shared.get(..moves.len()).ok_or(malformed("refers to no shared track"))?;
+            moves.copy_from_slice(shared);
+        }
+    }
+    Ok(Referred { sources, moves, sizes })
 }
 
 /// The context of a hinted advance width: the direction that the rightmost track's move takes the rounded width to, and the two

@@ -14,4 +14,4 @@ pub use index::{OutlineIndex, pack};
 pub use parts::*;
 pub use positions::{Choose, Price, Question};
 pub use sections::sizes_for;
-pub use shared::{Shared, Source};
+pub use shared::{Shared, SharedMoves, Source};

@@ -2,8 +2,10 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::rules::{Candidate, Neighbours, Ranked, Scores, View, coding_order, to_grid};
+use super::shared::Source;
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
 use crate::table::elements::{HIT, MISS_FRACTION, MISS_PIXELS};
@@ -12,17 +14,22 @@ use crate::table::range::Coder;
 /// Gives the probabilities of the bits of a move to its second argument.
 pub type Price<'q> = dyn Fn(i32, &mut dyn FnMut(u32)) + 'q;
 
-/// What a track refers to.
-pub(super) struct Referred {
-    /// The moves of a shared track.
-    pub(super) moves: Option<Vec<i16>>,
-    /// Whether the track's own moves are coded; else they are those of the shared track, or 0 without one.
-    pub(super) is_coded: bool,
+/// What tracks refer to.
+pub(super) struct Referred<'s> {
+    pub(super) sources: &'s [Source],
+    /// For each track, the moves of the shared track at the sizes that are coded; zeros for one that refers to none.
+    pub(super) moves: Vec<i16>,
+    pub(super) sizes: Range<usize>,
 }
 
-impl Default for Referred {
-    fn default() -> Self {
-        Self { moves: None, is_coded: true }
+impl Referred<'_> {
+    /// The move of the shared track at a size. None if the track refers to none.
+    fn moved(&self, track: usize, size: usize) -> Option<i16> {
+        if !matches!(self.sources[track], Source::Same(_) | Source::Near(_)) {
+            return None;
+        }
+        let at = track * self.sizes.len() + size.checked_sub(self.sizes.start)?;
+        self.moves.get(at).copied()
     }
 }
 
@@ -54,16 +61,15 @@ pub(super) struct Axis<'r> {
     positions: Vec<i32>,
     /// The sizes of the section that are coded.
     coded: usize,
-    /// What each track refers to, and the first size of the moves there.
-    referred: &'r [Referred],
-    first_size: usize,
+    /// What each track refers to.
+    referred: &'r Referred<'r>,
     /// Working memory.
     ranked: Ranked,
 }
 
 /// A track, and what is known of it from smaller sizes.
 struct Track {
-    number: usize,
+    number: u8,
     neighbours: Neighbours,
     scores: Scores,
     /// Whether the first candidate was wrong at each of the last sizes, the last one lowest.
@@ -71,10 +77,11 @@ struct Track {
 }
 
 impl<'r> Axis<'r> {
-    /// Tracks at the first size of a section, with what each refers to; the moves there begin with the size number `first_size`.
-    pub(super) fn new(axis: usize, referred: &'r [Referred], first_size: usize) -> Self {
-        let count = referred.len();
-        let track = |(number, neighbours): (usize, Neighbours)| Track {
+    /// Tracks at the first size of a section, with what each refers to.
+    pub(super) fn new(axis: usize, referred: &'r Referred<'r>) -> Self {
+        // There are MAX_TRACKS at most.
+        let count = referred.sources.len() as u8;
+        let track = |(number, neighbours): (u8, Neighbours)| Track {
             number,
             neighbours,
             scores: Scores::new(neighbours.kind()),
@@ -83,9 +90,8 @@ impl<'r> Axis<'r> {
         Self {
             axis,
             referred,
-            first_size,
             tracks: coding_order(count).into_iter().map(track).collect(),
-            positions: vec![0; 3 * count],
+            positions: vec![0; 3 * usize::from(count)],
             coded: 0,
             ranked: Ranked::default(),
         }
@@ -112,10 +118,9 @@ impl<'r> Axis<'r> {
         let before = (self.coded > 0).then_some(&*before);
         let mut missed = 0;
         for track in &mut self.tracks {
-            let number = track.number;
-            let Referred { moves: shared, is_coded } = &self.referred[number];
-            let shared = shared.as_ref().and_then(|moves| moves.get(size - self.first_size)).copied();
-            if !is_coded {
+            let number = usize::from(track.number);
+            let shared = self.referred.moved(number, size);
+            if let Source::Same(_) | Source::Still = self.referred.sources[number] {
                 moves[number] = shared.unwrap_or(0);
             } else {
                 let view = View { levels, plain, hinted, before };
@@ -155,6 +160,7 @@ impl Track {
     ) -> (i16, bool) {
         // The lowest and the highest track have few rules.
         match self.neighbours.kind() {
+            _ if cfg!(feature = "small") => self.code_by::<C, 3>(model, view, at, ranked, moved, choose),
             0 => self.code_by::<C, 1>(model, view, at, ranked, moved, choose),
             1 => self.code_by::<C, 2>(model, view, at, ranked, moved, choose),
             _ => self.code_by::<C, 3>(model, view, at, ranked, moved, choose),
@@ -171,14 +177,15 @@ impl Track {
         moved: i16,
         choose: Choose<'_>,
     ) -> (i16, bool) {
-        let plain = view.plain[self.number];
-        let rules = view.rules::<N>(self.number, self.neighbours, at.shared);
+        let number = usize::from(self.number);
+        let plain = view.plain[number];
+        let rules = view.rules::<N>(number, self.neighbours, at.shared);
         self.scores.rank(&rules, ranked);
         let mut candidates = Candidates { ranked, scores: &self.scores };
         let kind = self.neighbours.kind();
         let state = State { misses: usize::from(self.misses & 3), missed: at.missed, kind };
         let moved = if C::WRITES {
-            asked(model, &mut candidates, state, choose, (at.axis, self.number, at.size), plain, moved)
+            asked(model, &mut candidates, state, choose, (at.axis, number, at.size), plain, moved)
         } else {
             moved
         };

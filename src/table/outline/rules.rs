@@ -25,9 +25,9 @@ const ROOM: usize = LANES.next_power_of_two();
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Neighbours {
     /// The track below.
-    pub(super) lower: Option<usize>,
+    pub(super) lower: Option<u8>,
     /// The track above.
-    pub(super) upper: Option<usize>,
+    pub(super) upper: Option<u8>,
 }
 
 impl Neighbours {
@@ -39,17 +39,17 @@ impl Neighbours {
 
 /// The order in which tracks are coded: the lowest, the highest, and then the middle of each gap, which
 /// makes two gaps at the end of the line.
-pub(super) fn coding_order(count: usize) -> Vec<(usize, Neighbours)> {
-    let mut order = Vec::with_capacity(count);
+pub(super) fn coding_order(count: u8) -> Vec<(u8, Neighbours)> {
+    let mut order = Vec::with_capacity(count.into());
     if count > 0 {
         order.push((0, Neighbours::default()));
     }
     if count > 1 {
         order.push((count - 1, Neighbours { lower: Some(0), upper: None }));
     }
-    let split = |order: &mut Vec<_>, lower: usize, upper: usize| {
+    let split = |order: &mut Vec<_>, lower: u8, upper: u8| {
         if upper - lower > 1 {
-            order.push(((lower + upper) / 2, Neighbours { lower: Some(lower), upper: Some(upper) }));
+            order.push((lower.midpoint(upper), Neighbours { lower: Some(lower), upper: Some(upper) }));
         }
     };
     split(&mut order, 0, count.saturating_sub(1));
@@ -127,7 +127,7 @@ struct Valid {
     /// A bit for each rule.
     bits: u32,
     /// The same as masks.
-    lanes: [i32; ROOM],
+    lanes: [i8; ROOM],
 }
 
 impl View<'_> {
@@ -153,21 +153,22 @@ impl View<'_> {
             valid |= SHARED;
             at[3] = plain.wrapping_add(moved.into());
         }
-        if let (2.., Some(a)) = (N, neighbours.lower) {
+        let [lower, upper] = [neighbours.lower, neighbours.upper].map(|track| track.map(usize::from));
+        if let (2.., Some(a)) = (N, lower) {
             valid |= LOWER;
             let (hinted, apart) = (self.hinted[a], plain.wrapping_sub(self.plain[a]));
             at[4] = hinted.wrapping_add(to_grid(apart));
             at[5] = hinted.wrapping_add(apart);
             at[6] = hinted.wrapping_add(own.wrapping_sub(before(a)));
         }
-        if let (3.., Some(b)) = (N, neighbours.upper) {
+        if let (3.., Some(b)) = (N, upper) {
             valid |= UPPER;
             let (hinted, apart) = (self.hinted[b], self.plain[b].wrapping_sub(plain));
             at[8] = hinted.wrapping_sub(to_grid(apart));
             at[9] = hinted.wrapping_sub(apart);
             at[10] = hinted.wrapping_sub(before(b).wrapping_sub(own));
         }
-        if let (3.., Some(a), Some(b)) = (N, neighbours.lower, neighbours.upper) {
+        if let (3.., Some(a), Some(b)) = (N, lower, upper) {
             let ends = [a, b].map(|k| (i32::from(self.levels[k]), self.plain[k], self.hinted[k]));
             at[7] = interpolated(ends, self.levels[track].into(), plain);
         }
@@ -190,11 +191,8 @@ impl<const N: usize> Rules<N> {
 }
 
 #[inline(always)]
-fn lanes<const N: usize>(from: &[i32; ROOM]) -> [i32x4; N] {
-    core::array::from_fn(|group| {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|lane| from[(4 * group + lane) % ROOM]);
-        i32x4::new([a, b, c, d])
-    })
+fn lanes<const N: usize, T: Copy + Into<i32>>(from: &[T; ROOM]) -> [i32x4; N] {
+    core::array::from_fn(|group| i32x4::new([0, 1, 2, 3].map(|lane| from[(4 * group + lane) % ROOM].into())))
 }
 
 /// For each lane with this number, all bits.
@@ -206,7 +204,7 @@ fn equal<const N: usize>(lanes: [i32x4; N], number: i32) -> [i32x4; N] {
 
 /// How often each rule was right, in 1/65536.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scores([i32x4; GROUPS]);
+pub(super) struct Scores([u16; LANES]);
 
 /// The initial scores by the kind of neighbours, in 1/256.
 const INITIAL: [[u8; RULES]; 3] = [
@@ -217,11 +215,17 @@ const INITIAL: [[u8; RULES]; 3] = [
 
 impl Scores {
     pub(super) fn new(kind: usize) -> Self {
-        let mut scores = [0; ROOM];
+        let mut scores = [0; LANES];
         for (score, initial) in scores.iter_mut().zip(INITIAL[kind]) {
-            *score = i32::from(initial) << 8;
+            *score = u16::from(initial) << 8;
         }
-        Self(lanes(&scores))
+        Self(scores)
+    }
+
+    /// Those of four rules.
+    #[inline(always)]
+    fn group(&self, group: usize) -> i32x4 {
+        i32x4::new([0, 1, 2, 3].map(|lane| self.0[(4 * group + lane) % LANES].into()))
     }
 
     /// Groups the rules by their positions.
@@ -229,7 +233,7 @@ impl Scores {
     pub(super) fn rank<const N: usize>(&self, rules: &Rules<N>, ranked: &mut Ranked) {
         let (positions, valid): ([_; N], [_; N]) = (rules.lanes(), rules.valid());
         let weights: [i32x4; N] =
-            core::array::from_fn(|group| (self.0[group % GROUPS] + i32x4::splat(1)) & valid[group]);
+            core::array::from_fn(|group| (self.group(group) + i32x4::splat(1)) & valid[group]);
         let mut left = VALID[rules.valid % VALID.len()].bits;
         (ranked.count, ranked.selected, ranked.total) = (0, 0, 0);
         for place in &mut ranked.places {
@@ -255,25 +259,24 @@ impl Scores {
     pub(super) fn update<const N: usize>(&mut self, rules: &Rules<N>, position: i32) {
         let (equal, valid) = (equal(rules.lanes(), position), rules.valid());
         for (group, (equal, valid)) in equal.into_iter().zip(valid).enumerate() {
-            let scores = &mut self.0[group % GROUPS];
-            let more = (i32x4::splat(ALWAYS) - *scores) >> SCORE_RATE;
-            let less = i32x4::splat(0) - (*scores >> SCORE_RATE);
-            *scores += valid & (equal & more | !equal & less);
+            let scores = self.group(group);
+            let more = (i32x4::splat(ALWAYS) - scores) >> SCORE_RATE;
+            let less = i32x4::splat(0) - (scores >> SCORE_RATE);
+            let scores = scores + (valid & (equal & more | !equal & less));
+            for (lane, score) in scores.to_array().into_iter().enumerate() {
+                self.0[(4 * group + lane) % LANES] = score as u16;
+            }
         }
     }
 
     /// The rule with the highest score among some, and that score. `rules` has a bit for each.
     #[inline(always)]
     fn best(&self, rules: u32) -> (usize, u16) {
-        let mut scores = [0; ROOM];
-        for (to, from) in scores.chunks_exact_mut(4).zip(self.0) {
-            to.copy_from_slice(&from.to_array());
-        }
         let (mut best, mut score, mut left) = (0, -1, rules);
         while left != 0 {
-            let rule = left.trailing_zeros() as usize % ROOM;
+            let rule = left.trailing_zeros() as usize;
             left &= left - 1;
-            let own = scores[rule];
+            let own = self.0.get(rule).map_or(0, |score| i32::from(*score));
             (best, score) = if own > score { (rule, own) } else { (best, score) };
         }
         (best, score as u16)

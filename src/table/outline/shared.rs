@@ -21,13 +21,16 @@ pub enum Source {
     Still,
 }
 
+/// Gives the moves of a shared track, by its axis and its number, at some sizes. It is lent working memory.
+pub type SharedMoves<'a> = dyn Fn(usize, usize, Range<usize>, &mut Vec<u16>) -> Result<Vec<i16>, Damage> + 'a;
+
 /// The shared tracks of a font, along x and y.
 #[derive(Clone, Copy)]
 pub struct Shared<'a> {
     /// Their levels, ascending.
     pub levels: [&'a [BigEndian<i16>]; 2],
-    /// Gives the moves of a shared track, by its axis and its number, at some sizes.
-    pub moves: &'a dyn Fn(usize, usize, Range<usize>) -> Result<Vec<i16>, Damage>,
+    /// Gives the moves of a shared track, by its axis and its number, at some sizes. It is lent working memory.
+    pub moves: &'a SharedMoves<'a>,
 }
 
 impl Shared<'_> {

@@ -19,31 +19,51 @@ const SPLIT: usize = 5;
 struct Level {
     units: i16,
     /// Where they are in the list of all points by level.
-    points: Range<usize>,
+    points: Range<u16>,
     /// 2 for the lowest and the highest of the glyph, 1 for those of a contour, else 0.
-    extreme: usize,
-    on_curve: usize,
+    extreme: u8,
+    on_curve: u16,
     /// Whether two of them follow each other.
     is_flat: bool,
+}
+
+/// Sorts numbers, in Shell's way: a twentieth of the code of `sort_unstable`.
+fn sort(keys: &mut [u32]) {
+    for gap in [1750, 701, 301, 132, 57, 23, 10, 4, 1] {
+        for at in gap..keys.len() {
+            let (key, mut to) = (keys[at], at);
+            while to >= gap && keys[to - gap] > key {
+                keys[to] = keys[to - gap];
+                to -= gap;
+            }
+            keys[to] = key;
+        }
+    }
 }
 
 /// The numbers of an outline's points by their coordinates along an axis, and its levels, ascending.
 fn levels(points: &OutlinePoints, axis: usize) -> (Vec<u16>, Vec<Level>) {
     // Sorted as numbers: coordinates from 0 up, then points.
-    let key = |(point, units): (u16, &i16)| u32::from(*units as u16 ^ 0x8000) << 16 | u32::from(point);
-    let mut keys: Vec<u32> = (0u16..).zip(&points.coordinates[axis]).map(key).collect();
-    keys.sort_unstable();
+    let key = |(point, units): (usize, &i16)| u32::from(*units as u16 ^ 0x8000) << 16 | point as u32;
+    let mut keys: Vec<u32> = points.coordinates[axis].iter().enumerate().map(key).collect();
+    if cfg!(feature = "small") {
+        sort(&mut keys);
+    } else {
+        keys.sort_unstable();
+    }
     let mut order = Vec::with_capacity(keys.len());
     let mut levels: Vec<Level> = Vec::with_capacity(keys.len());
     let mut level_of = vec![0u16; keys.len()];
     for (at, key) in keys.iter().enumerate() {
+        // Outlines have 65535 points at most.
+        let at = at as u16;
         let (units, point) = (((key >> 16) ^ 0x8000) as i16, *key as u16);
         if levels.last().is_none_or(|level| level.units != units) {
             levels.push(Level { units, points: at..at, extreme: 0, on_curve: 0, is_flat: false });
         }
         let number = levels.len() - 1;
         levels[number].points.end = at + 1;
-        levels[number].on_curve += usize::from(points.on_curve[usize::from(point)]);
+        levels[number].on_curve += u16::from(points.on_curve[usize::from(point)]);
         level_of[usize::from(point)] = number as u16;
         order.push(point);
     }
@@ -82,12 +102,14 @@ pub(super) fn code<C: Coder>(
     let mut tracks =
         Tracks { last: i32::from(i16::MIN), before: [false; 2], levels: Vec::with_capacity(room) };
     for (at, level) in levels.iter().enumerate() {
-        let points = order.get(level.points.clone()).unwrap_or_default();
+        let points = usize::from(level.points.start)..level.points.end.into();
+        let points = order.get(points).unwrap_or_default();
         tracks.code(model, (at, level), points, units_per_em, hints)?;
         model.check()?;
     }
     if !C::WRITES {
         hints.levels = tracks.levels;
+        hints.levels.shrink_to_fit();
     }
     sources.resize(hints.levels.len(), Source::Own);
     for (level, source) in hints.levels.iter().zip(sources) {
@@ -119,8 +141,8 @@ impl Tracks {
         let units = i32::from(level.units);
         let is_near = class(thousandths(units - self.last), [10, 25, 60, 120, 250]);
         let contexts = [
-            level.extreme * 8 + (points.len().min(4) - 1) * 2 + usize::from(level.is_flat),
-            is_near * 3 + level.on_curve.min(2),
+            usize::from(level.extreme) * 8 + (points.len().min(4) - 1) * 2 + usize::from(level.is_flat),
+            is_near * 3 + usize::from(level.on_curve.min(2)),
             usize::from(self.before[0]) * 12 + usize::from(self.before[1]) * 6 + at.min(5),
         ];
         let own = |point: &u16| hints.track_of[usize::from(*point)];

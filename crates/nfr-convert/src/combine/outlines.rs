@@ -64,9 +64,9 @@ pub(super) fn messages(fonts: &[(&ConvertedFont<'_>, &[u16])]) -> Result<Message
     });
     for part in parts {
         let scale = nfr::internals::scale(&part.font.font);
-        let moves = |axis: usize, number: usize, sizes: Range<usize>| {
+        let moves = |axis: usize, number: usize, sizes: Range<usize>, memory: &mut Vec<u16>| {
             let (level, message) = messages.shared[axis].get(number).ok_or(OUTSIDE)?;
-            decode_shared(message, *level, scale, sizes, &mut Vec::new())
+            decode_shared(message, *level, scale, sizes, memory)
         };
         let shared = Shared { levels: [&levels[0], &levels[1]], moves: &moves };
         for (gid, model) in part.glyphs {
@@ -88,9 +88,9 @@ const OUTSIDE: Damage = Damage::Malformed("refers to something outside the table
 fn decode_all(font: &ConvertedFont<'_>, gids: &[u16]) -> Result<BTreeMap<u16, Decoded>, Error> {
     let (table, scale) = (font.table()?, nfr::internals::scale(&font.font));
     let index = *table.outlines();
-    let moves = |axis: usize, number: usize, sizes: Range<usize>| {
+    let moves = |axis: usize, number: usize, sizes: Range<usize>, memory: &mut Vec<u16>| {
         let level = index.levels()[axis].get(number).ok_or(OUTSIDE)?.get();
-        decode_shared(index.shared(axis, number).ok_or(OUTSIDE)?, level, scale, sizes, &mut Vec::new())
+        decode_shared(index.shared(axis, number).ok_or(OUTSIDE)?, level, scale, sizes, memory)
     };
     let shared = Shared { levels: index.levels(), moves: &moves };
     let decode_glyph = |gid: u16| -> Result<Decoded, Error> {

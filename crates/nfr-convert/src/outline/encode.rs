@@ -54,7 +54,7 @@ pub(crate) fn encode(
         if let Some(encoded) = store.kept(*number) {
             return Ok(encoded);
         }
-        let moves = |axis: usize, number: usize, sizes: Range<usize>| {
+        let moves = |axis: usize, number: usize, sizes: Range<usize>, _: &mut Vec<u16>| {
             Ok(shared[axis].0[number].moves[sizes].to_vec())
         };
         let known = Known {

@@ -23,7 +23,7 @@ fn example() -> (OutlinePoints, OutlineWeights, Sources) {
 }
 
 fn known(points: &OutlinePoints) -> Known<'_> {
-    let shared = Shared { levels: [&[], &[]], moves: &|_, _, _| Ok(Vec::new()) };
+    let shared = Shared { levels: [&[], &[]], moves: &|_, _, _, _| Ok(Vec::new()) };
     Known { points, advance: 450, scale: Scale::new(1000, 8, 10).expect("a scale"), shared }
 }
 
