@@ -10,6 +10,7 @@ mod font;
 mod glyph;
 mod lcd;
 mod metrics;
+mod mono;
 mod outline;
 mod rasterizer;
 mod scratch;

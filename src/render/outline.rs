@@ -12,6 +12,7 @@ use super::area::Area;
 
 use super::flatten::{FINE, FLAT, Polygons};
 use super::font::Font;
+use super::glyph::HintedOutline;
 use super::scratch::Scratch;
 use super::strips::{STRIP, in_strips};
 use super::tables::OutlineTables;
@@ -70,6 +71,29 @@ fn load(tables: &OutlineTables<'_>, glyph: GlyphId, points: &mut OutlinePoints) 
     Some(())
 }
 
+/// A glyph's plain outline as a model.
+fn plain_model(font: &Font, glyph: u32) -> Result<OutlineModel, Error> {
+    let mut points = OutlinePoints::default();
+    read_outline(font, glyph, &mut points)?;
+    let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0..0);
+    model.map_err(|damage| damage.of(glyph))
+}
+
+/// Adds the points of a glyph's plain outline.
+///
+/// # Errors
+///
+/// `NoSuchGlyph`, `MalformedOutline`, `BitmapTooLarge`.
+pub(super) fn hinted_plain(
+    font: &Font,
+    glyph: u32,
+    options: DrawOptions,
+    outline: &mut HintedOutline,
+    points: &mut [Vec<i32>; 2],
+) -> Result<(), Error> {
+    outline.add(&plain_model(font, glyph)?, &HintedSize::plain(options.ppem), [0; 2], points)
+}
+
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.
 pub(super) fn draw_plain<'b>(
     font: &Font,
@@ -80,10 +104,7 @@ pub(super) fn draw_plain<'b>(
     room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
 ) -> Result<Option<Placement>, Error> {
     let options = options.checked()?;
-    let mut points = OutlinePoints::default();
-    read_outline(font, glyph, &mut points)?;
-    let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0..0);
-    let model = model.map_err(|damage| damage.of(glyph))?;
+    let model = plain_model(font, glyph)?;
     let size = HintedSize::plain(options.ppem);
     let room = |placement: Placement| {
         limits.check_sides(placement.width, placement.height)?;
@@ -197,7 +218,7 @@ pub(super) fn draw_polygons<'b>(
 const MAX_REACH: u32 = 1 << 24;
 
 /// Checks that polygons can be computed in 32 bits.
-fn check_reach(points: &[Vec<i32>; 2], offset: [i32; 2]) -> Result<(), Error> {
+pub(super) fn check_reach(points: &[Vec<i32>; 2], offset: [i32; 2]) -> Result<(), Error> {
     let reach = |axis: usize| {
         let points = points[axis].iter().fold(0, |reach, v| reach.max(v.unsigned_abs()));
         points.saturating_add(offset[axis].unsigned_abs())

@@ -221,8 +221,8 @@ impl Rasterizer {
         options: DrawOptions,
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
-        match self.cache.get(&mut self.decoder, glyph, options) {
-            Ok(entry) if options.hinting || entry.decoded.has_outline() => {
+        match Source::of(&mut self.cache, &mut self.decoder, self.missing, glyph, options)? {
+            Source::Model(entry) => {
                 let before = entry.kept.memory();
                 let drawn = entry.decoded.draw_kept(&mut entry.kept, options, &mut self.scratch, room);
                 let after = entry.kept.memory();
@@ -231,20 +231,22 @@ impl Rasterizer {
                 }
                 drawn
             }
-            Err(error @ Error::MissingModel(missing)) if missing == glyph && options.hinting => {
-                match self.missing {
-                    MissingModel::Error => Err(error),
-                    MissingModel::Blank => {
-                        options.checked()?;
-                        room(Placement::default())?;
-                        Ok(Some(Placement::default()))
-                    }
-                    MissingModel::Outline => self.draw_plain(glyph, options, room),
-                }
+            Source::Blank => {
+                options.checked()?;
+                room(Placement::default())?;
+                Ok(Some(Placement::default()))
             }
-            Err(error) if !matches!(error, Error::MissingModel(missing) if missing == glyph) => Err(error),
-            Ok(_) | Err(_) => self.draw_plain(glyph, options, room),
+            Source::Plain => self.draw_plain(glyph, options, room),
         }
+    }
+
+    /// What a glyph is drawn from.
+    pub(super) fn source(&mut self, glyph: u32, options: DrawOptions) -> Result<Source<'_>, Error> {
+        Source::of(&mut self.cache, &mut self.decoder, self.missing, glyph, options)
+    }
+
+    pub(super) fn limits(&self) -> &Limits {
+        self.decoder.limits()
     }
 
     /// Draws the outline that the font has for a glyph.
@@ -255,6 +257,36 @@ impl Rasterizer {
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
         draw_plain(self.decoder.font(), glyph, options, self.decoder.limits(), &mut self.scratch, room)
+    }
+}
+
+/// What a glyph is drawn from.
+pub(super) enum Source<'c> {
+    Model(&'c mut Entry),
+    /// Nothing: it has no model.
+    Blank,
+    /// The outline that the font has for it.
+    Plain,
+}
+
+impl<'c> Source<'c> {
+    fn of(
+        cache: &'c mut Cache,
+        decoder: &mut Decoder,
+        missing: MissingModel,
+        glyph: u32,
+        options: DrawOptions,
+    ) -> Result<Self, Error> {
+        match cache.get(decoder, glyph, options) {
+            Ok(entry) if options.hinting || entry.decoded.has_outline() => Ok(Self::Model(entry)),
+            Err(error @ Error::MissingModel(absent)) if absent == glyph && options.hinting => match missing {
+                MissingModel::Error => Err(error),
+                MissingModel::Blank => Ok(Self::Blank),
+                MissingModel::Outline => Ok(Self::Plain),
+            },
+            Err(error) if !matches!(error, Error::MissingModel(absent) if absent == glyph) => Err(error),
+            Ok(_) | Err(_) => Ok(Self::Plain),
+        }
     }
 }
 
@@ -270,7 +302,7 @@ struct Cache {
 }
 
 #[derive(Debug)]
-struct Entry {
+pub(super) struct Entry {
     glyph: u32,
     /// When it was last asked for.
     used: u64,
@@ -280,6 +312,11 @@ struct Entry {
 }
 
 impl Entry {
+    /// The decoded glyph.
+    pub(super) fn glyph(&self) -> &Glyph {
+        &self.decoded
+    }
+
     fn memory(&self) -> usize {
         self.decoded.memory() + self.kept.memory()
     }
