@@ -27,8 +27,8 @@ impl Grid {
         if self.bits == 12 { 256 } else { 32 }
     }
 
-    /// A position in 1/64 pixel from the lower left corner of the first pixel.
-    pub(super) fn from_64ths(self, v: i32) -> i32 {
+    /// Where a position lies that is in 1/64 pixel from the lower left corner of the first pixel.
+    pub(super) fn position(self, v: i32) -> i32 {
         v * (self.one() / 64) - self.one() / 2
     }
 

@@ -12,6 +12,7 @@ use self::sweep::{Bits, Pass, Sweep};
 use super::glyph::HintedOutline;
 use super::outline::{check_reach, hinted_plain};
 use super::rasterizer::{Rasterizer, Source};
+#[cfg(any(feature = "fields", feature = "networks"))]
 use crate::bitmap::Canvas;
 use crate::constants::MAX_SIDE;
 use crate::error::Error;
@@ -24,6 +25,7 @@ use crate::placement::Placement;
 use crate::table::Dropout;
 
 /// The least coverage of a pixel that is black where a glyph has no outline.
+#[cfg(any(feature = "fields", feature = "networks"))]
 const HALF: u8 = 128;
 
 /// Working memory of drawing in black and white.
@@ -88,11 +90,13 @@ impl Rasterizer {
         let size = match self.source(glyph, options)? {
             Source::Model(entry) => {
                 let options = options.checked()?;
-                let Some(size) = entry.glyph().outline_at(options, &mut mono.outline, &mut mono.points)?
-                else {
-                    return self.threshold(glyph, options, &mut mono.bits);
-                };
-                size
+                match entry.glyph().outline_at(options, &mut mono.outline, &mut mono.points)? {
+                    Some(size) => size,
+                    #[cfg(any(feature = "fields", feature = "networks"))]
+                    None => return self.threshold(glyph, options, &mut mono.bits),
+                    #[cfg(not(any(feature = "fields", feature = "networks")))]
+                    None => return Ok(Placement::default()),
+                }
             }
             Source::Blank => {
                 options.checked()?;
@@ -120,6 +124,7 @@ impl Rasterizer {
     }
 
     /// Draws coverage, and makes what is covered by half or more black.
+    #[cfg(any(feature = "fields", feature = "networks"))]
     fn threshold(
         &mut self,
         glyph: u32,
@@ -171,7 +176,7 @@ impl Mono {
             let mut start = 0;
             for &end in &outline.ends {
                 profiles.contour(end - start, |k| {
-                    let at = |axis: usize| grid.from_64ths(outline.points[axis][start + k] + moved[axis]);
+                    let at = |axis: usize| grid.position(outline.points[axis][start + k] + moved[axis]);
                     ([at(along), at(across)], outline.on_curve[start + k])
                 });
                 start = end;
