@@ -23,8 +23,8 @@ const DEFAULT_CACHE: usize = 8 << 20;
 /// Draws a font's glyphs, one thread at a time. Decoded models are kept, and working memory is reused: a glyph that is in
 /// the cache is drawn without allocating.
 ///
-/// All ways of drawing give the same pixels. Their errors are the same, too: `NoSuchGlyph` for a glyph that the font does
-/// not have, `MissingModel` for one without a model (see [`Self::with_missing_model`]), `MalformedModel` or
+/// All ways of drawing grey coverage give the same pixels. Their errors are the same, too: `NoSuchGlyph` for a glyph that
+/// the font does not have, `MissingModel` for one without a model (see [`Self::with_missing_model`]), `MalformedModel` or
 /// `ModelTooLarge` for a damaged one, `InvalidSize` or `InvalidOffset` for [`DrawOptions`] out of range, `BitmapTooLarge`,
 /// `DecodedTooLarge` or `TooMuchWork` for what is beyond the [`Limits`], for glyphs that a field draws
 /// `FieldsNotBuilt`, and for those that a network draws `NetworksNotBuilt`, `NetworkSize` and `NetworkOffset`.
