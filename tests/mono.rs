@@ -96,8 +96,7 @@ proptest! {
         prop_assert!(none.placement == some.placement && some.placement == all.placement);
         for ((none, some), all) in none.bits.iter().zip(&some.bits).zip(&all.bits) {
             prop_assert_eq!(none & !some, 0);
-            // A stub that is filled may keep a gap beside it from being filled, but it fills it then.
-            prop_assert!(none & !all == 0);
+            prop_assert_eq!(none & !all, 0);
         }
     }
 }
@@ -182,6 +181,27 @@ fn a_speck_has_the_pixel_that_holds_it_if_a_line_of_centres_crosses_it() {
         let place = drawn.placement;
         assert_eq!([place.left, place.top - 1], pixel, "{corner:?}");
         assert_eq!((place.width, place.height, rows(&drawn)), (1, 1, vec![row.to_owned()]), "{corner:?}");
+    }
+}
+
+#[test]
+fn the_box_holds_the_pixels_whose_centres_the_outline_reaches_and_one_at_least() {
+    for ([low, high], [first, end]) in [
+        ([32, 96], [0, 2]),
+        ([33, 95], [1, 1]),
+        ([-32, 33], [-1, 1]),
+        // Between two centres it is the pixel that holds more of the outline, and the upper one of two with as much.
+        ([59, 68], [0, 1]),
+        ([60, 68], [1, 2]),
+        ([60, 69], [1, 2]),
+    ] {
+        let drawn = polygons(&[&rectangle([low, 0], [high, 640])]).black_and_white(12.0, Dropout::default());
+        let place = drawn.unwrap().placement;
+        let end = end.max(first + 1);
+        assert_eq!([place.left, place.left + place.width as i32], [first, end], "{low} to {high} along x");
+        let drawn = polygons(&[&rectangle([0, low], [640, high])]).black_and_white(12.0, Dropout::default());
+        let place = drawn.unwrap().placement;
+        assert_eq!([place.top - place.height as i32, place.top], [first, end], "{low} to {high} along y");
     }
 }
 

@@ -90,7 +90,7 @@ fn outlines_without_hints_are_freetypes_at_any_size() {
         let font = Font::new(convert(&original, &options, &Silent).unwrap().font).unwrap();
         let face = face(&original);
         let mut rasterizer = Rasterizer::new(&font).with_missing_model(MissingModel::Outline);
-        for (ppem, character) in [5, 9, 12, 23, 24, 70]
+        for (ppem, character) in [5, 9, 12, 23, 24, 70, 300]
             .into_iter()
             .flat_map(|ppem| ascii().chars().map(move |character| (ppem, character)).collect::<Vec<_>>())
         {

@@ -183,9 +183,9 @@ impl Profiles {
     }
 
     fn line(&mut self, to: Point) {
-        let [from, is_up] = [self.last, [0, i32::from(to[1] > self.last[1])]];
-        let is_up = is_up[1] == 1;
+        let from = self.last;
         if to[1] != from[1] {
+            let is_up = to[1] > from[1];
             self.turn(is_up);
             self.cross_line(from, to, is_up);
         }
