@@ -12,7 +12,6 @@ use super::area::Area;
 
 use super::flatten::{FINE, FLAT, Polygons};
 use super::font::Font;
-use super::glyph::HintedOutline;
 use super::scratch::Scratch;
 use super::strips::{STRIP, in_strips};
 use super::tables::OutlineTables;
@@ -72,26 +71,15 @@ fn load(tables: &OutlineTables<'_>, glyph: GlyphId, points: &mut OutlinePoints) 
 }
 
 /// A glyph's plain outline as a model.
-fn plain_model(font: &Font, glyph: u32) -> Result<OutlineModel, Error> {
+///
+/// # Errors
+///
+/// `NoSuchGlyph`, `MalformedOutline`.
+pub(super) fn plain_model(font: &Font, glyph: u32) -> Result<OutlineModel, Error> {
     let mut points = OutlinePoints::default();
     read_outline(font, glyph, &mut points)?;
     let model = OutlineModel::new(points, OutlineWeights::default(), font.scale(), 0..0);
     model.map_err(|damage| damage.of(glyph))
-}
-
-/// Adds the points of a glyph's plain outline.
-///
-/// # Errors
-///
-/// `NoSuchGlyph`, `MalformedOutline`, `BitmapTooLarge`.
-pub(super) fn hinted_plain(
-    font: &Font,
-    glyph: u32,
-    options: DrawOptions,
-    outline: &mut HintedOutline,
-    points: &mut [Vec<i32>; 2],
-) -> Result<(), Error> {
-    outline.add(&plain_model(font, glyph)?, &HintedSize::plain(options.ppem), [0; 2], points)
 }
 
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.

@@ -6,6 +6,7 @@ use core::ops::Range;
 use super::decoder::Decoder;
 use super::font::Font;
 use super::glyph::{Flattened, Glyph, fresh};
+use super::mono::paint::Mono;
 use super::outline::draw_plain;
 use super::scratch::Scratch;
 use crate::bitmap::{Bitmap, BitmapRef, Canvas};
@@ -34,6 +35,8 @@ pub struct Rasterizer {
     missing: MissingModel,
     cache: Cache,
     pub(super) scratch: Scratch,
+    /// Of drawing in black and white.
+    pub(super) mono: Mono,
     /// The bitmap that [`Self::draw`] lends.
     pixels: Vec<u8>,
 }
@@ -51,6 +54,7 @@ impl Rasterizer {
             missing: MissingModel::default(),
             cache: Cache { limit: DEFAULT_CACHE, ..Cache::default() },
             scratch: Scratch::default(),
+            mono: Mono::default(),
             pixels: Vec::new(),
         }
     }

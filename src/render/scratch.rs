@@ -4,7 +4,6 @@ use alloc::vec::Vec;
 
 use super::area::Area;
 use super::flatten;
-use super::mono::Mono;
 #[cfg(feature = "fields")]
 use crate::model::contour::{Polygons, Tracer};
 #[cfg(feature = "fields")]
@@ -30,5 +29,4 @@ pub struct Scratch {
     /// Of subpixels: their coverage, before it is filtered or joined, and the pixels that they make.
     pub(super) subpixels: Vec<u8>,
     pub(super) lcd: Vec<[u8; 3]>,
-    pub(super) mono: Mono,
 }
