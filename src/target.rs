@@ -9,7 +9,8 @@ pub enum Target {
     /// Hinting in y for grey antialiasing (FreeType's `FT_LOAD_TARGET_NORMAL`).
     #[default]
     Smooth,
-    /// Hinting in x and y, drawn with grey coverage (`FT_LOAD_TARGET_MONO`).
+    /// Hinting in x and y (`FT_LOAD_TARGET_MONO`), drawn in black and white by
+    /// [`Rasterizer::draw_mono`](crate::Rasterizer::draw_mono), or with grey coverage.
     Mono,
     /// Hinting for horizontal subpixels, drawn with grey coverage (`FT_LOAD_TARGET_LCD`).
     Lcd,

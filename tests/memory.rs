@@ -56,26 +56,29 @@ const SIZES: [f32; 8] = [8.0, 100.0, 12.5, 200.0, 20.0, 64.0, 130.5, 33.0];
 const OFFSETS: [[f32; 2]; 8] =
     [[0.0; 2], [0.25, 0.0], [0.5, 0.5], [0.75, -0.3], [-0.9, 0.0], [0.0, 0.1], [3.3, -7.2], [0.6, 0.0]];
 
+/// Outlines, which black and white takes other ways for than fields.
 #[test]
 fn a_warm_loop_allocates_nothing() {
-    let font = font("sans");
-    let mut rasterizer = Rasterizer::new(&font);
-    let glyphs: Vec<u32> = font.modelled_glyphs().collect();
-    let mut pixels = vec![0; 1 << 16];
-    let mut draw_all = || {
-        let before = ALLOCATIONS.get();
-        for glyph in &glyphs {
-            for (ppem, offset) in SIZES.into_iter().zip(OFFSETS) {
-                let options = DrawOptions::new(ppem).with_offset(offset);
-                rasterizer.placement(*glyph, options).unwrap();
-                rasterizer.draw(*glyph, options).unwrap();
-                rasterizer.render_into(*glyph, options, &mut pixels, 256).unwrap();
+    for font in ["sans", "outline-mono"].map(font) {
+        let mut rasterizer = Rasterizer::new(&font);
+        let glyphs: Vec<u32> = font.modelled_glyphs().collect();
+        let mut pixels = vec![0; 1 << 16];
+        let mut draw_all = || {
+            let before = ALLOCATIONS.get();
+            for glyph in &glyphs {
+                for (ppem, offset) in SIZES.into_iter().zip(OFFSETS) {
+                    let options = DrawOptions::new(ppem).with_offset(offset);
+                    rasterizer.placement(*glyph, options).unwrap();
+                    rasterizer.draw(*glyph, options).unwrap();
+                    rasterizer.draw_mono(*glyph, options).unwrap();
+                    rasterizer.render_into(*glyph, options, &mut pixels, 256).unwrap();
+                }
             }
-        }
-        ALLOCATIONS.get() - before
-    };
-    assert!(draw_all() > 0, "the first round allocates: the counter does not count");
-    assert_eq!(draw_all(), 0);
+            ALLOCATIONS.get() - before
+        };
+        assert!(draw_all() > 0, "the first round allocates: the counter does not count");
+        assert_eq!(draw_all(), 0);
+    }
 }
 
 /// What opening a font may take beside its bytes.

@@ -13,6 +13,7 @@ mod glyf;
 mod glyph;
 mod lcd;
 mod metrics;
+mod mono;
 mod outline;
 mod rasterizer;
 mod scratch;

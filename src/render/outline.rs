@@ -30,6 +30,16 @@ pub(super) fn read_outline(font: &Font, glyph: u32) -> Result<OutlinePoints, Err
     read.filter(|points| !points.is_unfit).ok_or(Error::MalformedOutline(glyph))
 }
 
+/// A glyph's plain outline as a model.
+///
+/// # Errors
+///
+/// `NoSuchGlyph`, `MalformedOutline`.
+pub(super) fn plain_model(font: &Font, glyph: u32) -> Result<OutlineModel, Error> {
+    let model = OutlineModel::new(read_outline(font, glyph)?, OutlineWeights::default(), font.scale(), 0..0);
+    model.map_err(|damage| damage.of(glyph))
+}
+
 /// Draws a glyph's plain outline into the canvas that `room` gives for its placement, if it gives one.
 pub(super) fn draw_plain<'b>(
     font: &Font,
@@ -40,8 +50,7 @@ pub(super) fn draw_plain<'b>(
     room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
 ) -> Result<Option<Placement>, Error> {
     let options = options.checked()?;
-    let model = OutlineModel::new(read_outline(font, glyph)?, OutlineWeights::default(), font.scale(), 0..0);
-    let model = model.map_err(|damage| damage.of(glyph))?;
+    let model = plain_model(font, glyph)?;
     let size = HintedSize::plain(options.ppem);
     let room = |placement: Placement| {
         limits.check_sides(placement.width, placement.height)?;
@@ -155,7 +164,7 @@ pub(super) fn draw_polygons<'b>(
 const MAX_REACH: u32 = 1 << 24;
 
 /// Checks that polygons can be computed in 32 bits.
-fn check_reach(points: &[Vec<i32>; 2], offset: [i32; 2]) -> Result<(), Error> {
+pub(super) fn check_reach(points: &[Vec<i32>; 2], offset: [i32; 2]) -> Result<(), Error> {
     let reach = |axis: usize| {
         let points = points[axis].iter().fold(0, |reach, v| reach.max(v.unsigned_abs()));
         points.saturating_add(offset[axis].unsigned_abs())

@@ -6,6 +6,7 @@ use core::ops::Range;
 use super::decoder::Decoder;
 use super::font::Font;
 use super::glyph::{Flattened, Glyph, fresh};
+use super::mono::paint::Mono;
 use super::outline::draw_plain;
 use super::scratch::Scratch;
 use crate::bitmap::{Bitmap, BitmapRef, Canvas};
@@ -23,8 +24,8 @@ const DEFAULT_CACHE: usize = 8 << 20;
 /// Draws a font's glyphs, one thread at a time. Decoded models are kept, and working memory is reused: a glyph that is in
 /// the cache is drawn without allocating.
 ///
-/// All ways of drawing give the same pixels. Their errors are the same, too: `NoSuchGlyph` for a glyph that the font does
-/// not have, `MissingModel` for one without a model (see [`Self::with_missing_model`]), `MalformedModel` or
+/// All ways of drawing grey coverage give the same pixels. Their errors are the same, too: `NoSuchGlyph` for a glyph that
+/// the font does not have, `MissingModel` for one without a model (see [`Self::with_missing_model`]), `MalformedModel` or
 /// `ModelTooLarge` for a damaged one, `InvalidSize` or `InvalidOffset` for [`DrawOptions`] out of range, `BitmapTooLarge`,
 /// `DecodedTooLarge` or `TooMuchWork` for what is beyond the [`Limits`], for glyphs that a field draws
 /// `FieldsNotBuilt`, and for those that a network draws `NetworksNotBuilt`, `NetworkSize` and `NetworkOffset`.
@@ -34,6 +35,8 @@ pub struct Rasterizer {
     missing: MissingModel,
     cache: Cache,
     pub(super) scratch: Scratch,
+    /// Of drawing in black and white.
+    pub(super) mono: Mono,
     /// The bitmap that [`Self::draw`] lends.
     pixels: Vec<u8>,
 }
@@ -51,6 +54,7 @@ impl Rasterizer {
             missing: MissingModel::default(),
             cache: Cache { limit: DEFAULT_CACHE, ..Cache::default() },
             scratch: Scratch::default(),
+            mono: Mono::default(),
             pixels: Vec::new(),
         }
     }
@@ -221,8 +225,8 @@ impl Rasterizer {
         options: DrawOptions,
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
-        match self.cache.get(&mut self.decoder, glyph, options) {
-            Ok(entry) if options.hinting || entry.decoded.has_outline() => {
+        match Source::of(&mut self.cache, &mut self.decoder, self.missing, glyph, options)? {
+            Source::Model(entry) => {
                 let before = entry.kept.memory();
                 let drawn = entry.decoded.draw_kept(&mut entry.kept, options, &mut self.scratch, room);
                 let after = entry.kept.memory();
@@ -231,20 +235,22 @@ impl Rasterizer {
                 }
                 drawn
             }
-            Err(error @ Error::MissingModel(missing)) if missing == glyph && options.hinting => {
-                match self.missing {
-                    MissingModel::Error => Err(error),
-                    MissingModel::Blank => {
-                        options.checked()?;
-                        room(Placement::default())?;
-                        Ok(Some(Placement::default()))
-                    }
-                    MissingModel::Outline => self.draw_plain(glyph, options, room),
-                }
+            Source::Blank => {
+                options.checked()?;
+                room(Placement::default())?;
+                Ok(Some(Placement::default()))
             }
-            Err(error) if !matches!(error, Error::MissingModel(missing) if missing == glyph) => Err(error),
-            Ok(_) | Err(_) => self.draw_plain(glyph, options, room),
+            Source::Plain => self.draw_plain(glyph, options, room),
         }
+    }
+
+    /// What a glyph is drawn from.
+    pub(super) fn source(&mut self, glyph: u32, options: DrawOptions) -> Result<Source<'_>, Error> {
+        Source::of(&mut self.cache, &mut self.decoder, self.missing, glyph, options)
+    }
+
+    pub(super) fn limits(&self) -> &Limits {
+        self.decoder.limits()
     }
 
     /// Draws the outline that the font has for a glyph.
@@ -255,6 +261,36 @@ impl Rasterizer {
         room: impl FnOnce(Placement) -> Result<Option<Canvas<'b>>, Error>,
     ) -> Result<Option<Placement>, Error> {
         draw_plain(self.decoder.font(), glyph, options, self.decoder.limits(), &mut self.scratch, room)
+    }
+}
+
+/// What a glyph is drawn from.
+pub(super) enum Source<'c> {
+    Model(&'c mut Entry),
+    /// Nothing: it has no model.
+    Blank,
+    /// The outline that the font has for it.
+    Plain,
+}
+
+impl<'c> Source<'c> {
+    fn of(
+        cache: &'c mut Cache,
+        decoder: &mut Decoder,
+        missing: MissingModel,
+        glyph: u32,
+        options: DrawOptions,
+    ) -> Result<Self, Error> {
+        match cache.get(decoder, glyph, options) {
+            Ok(entry) if options.hinting || entry.decoded.has_outline() => Ok(Self::Model(entry)),
+            Err(error @ Error::MissingModel(absent)) if absent == glyph && options.hinting => match missing {
+                MissingModel::Error => Err(error),
+                MissingModel::Blank => Ok(Self::Blank),
+                MissingModel::Outline => Ok(Self::Plain),
+            },
+            Err(error) if !matches!(error, Error::MissingModel(absent) if absent == glyph) => Err(error),
+            Ok(_) | Err(_) => Ok(Self::Plain),
+        }
     }
 }
 
@@ -270,7 +306,7 @@ struct Cache {
 }
 
 #[derive(Debug)]
-struct Entry {
+pub(super) struct Entry {
     glyph: u32,
     /// When it was last asked for.
     used: u64,
@@ -280,6 +316,11 @@ struct Entry {
 }
 
 impl Entry {
+    /// The decoded glyph.
+    pub(super) fn glyph(&self) -> &Glyph {
+        &self.decoded
+    }
+
     fn memory(&self) -> usize {
         self.decoded.memory() + self.kept.memory()
     }

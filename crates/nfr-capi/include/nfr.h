@@ -294,6 +294,21 @@ nfr_status nfr_rasterizer_draw(nfr_rasterizer *rasterizer,
                                const uint8_t **pixels,
                                nfr_placement *placement);
 
+// Draws a glyph in black and white into memory of the rasterizer's, and lends it: placement.height rows of
+// (placement.width + 7) / 8 bytes, one bit a pixel, top row first, the first pixel of a byte in its highest bit. Drop-out
+// control fills the gaps of thin strokes as FreeType's FT_RENDER_MODE_MONO does. Size and offset are as in
+// nfr_rasterizer_placement, whose box is that of coverage; this one may be smaller.
+//
+// rasterizer: a rasterizer. bits: receives a pointer that is never NULL on success, and valid until the next call with
+// this rasterizer. placement: receives it.
+nfr_status nfr_rasterizer_draw_mono(nfr_rasterizer *rasterizer,
+                                    uint32_t glyph,
+                                    float ppem,
+                                    float offset_x,
+                                    float offset_y,
+                                    const uint8_t **bits,
+                                    nfr_placement *placement);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus

@@ -232,6 +232,36 @@ pub unsafe extern "C" fn nfr_rasterizer_draw(
     })
 }
 
+/// Draws a glyph in black and white into memory of the rasterizer's, and lends it: placement.height rows of
+/// (placement.width + 7) / 8 bytes, one bit a pixel, top row first, the first pixel of a byte in its highest bit. Drop-out
+/// control fills the gaps of thin strokes as FreeType's FT_RENDER_MODE_MONO does. Size and offset are as in
+/// nfr_rasterizer_placement, whose box is that of coverage; this one may be smaller.
+///
+/// rasterizer: a rasterizer. bits: receives a pointer that is never NULL on success, and valid until the next call with
+/// this rasterizer. placement: receives it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nfr_rasterizer_draw_mono(
+    rasterizer: *mut nfr_rasterizer,
+    glyph: u32,
+    ppem: f32,
+    offset_x: f32,
+    offset_y: f32,
+    bits: *mut *const u8,
+    placement: *mut nfr_placement,
+) -> nfr_status {
+    call(|| {
+        // SAFETY: the header asks for NULL or a rasterizer of this thread, and for pointers to write to.
+        let (held, lent, out) = unsafe {
+            let held = exclusive(rasterizer, "rasterizer")?;
+            (held, Out::new(bits, "bits")?, Out::new(placement, "placement")?)
+        };
+        let bitmap = held.0.draw_mono(glyph, options(ppem, offset_x, offset_y))?;
+        out.set(bitmap.placement.into());
+        lent.set(bitmap.bits.as_ptr());
+        Ok(())
+    })
+}
+
 fn options(ppem: f32, x: f32, y: f32) -> DrawOptions {
     DrawOptions::new(ppem).with_offset([x, y])
 }

@@ -58,7 +58,8 @@ fn pixels_and_metrics_are_those_of_the_library() {
     for character in "agR ".chars() {
         let glyph = font.glyph_for_char(character).unwrap();
         for (ppem, offset) in [(9.0, [0.0, 0.0]), (12.5, [0.25, 0.5]), (40.0, [0.0, 0.0])] {
-            let expected = rasterizer.render(glyph, DrawOptions::new(ppem).with_offset(offset)).unwrap();
+            let options = DrawOptions::new(ppem).with_offset(offset);
+            let expected = rasterizer.render(glyph, options).unwrap();
             let (mut placement, mut lent, mut advance) = (nfr_placement::default(), null(), 0.0);
             let (mut pixels, stride) = (vec![7; 64 * 64], 64);
             // SAFETY: handles that are open, and pointers to values of this function.
@@ -71,6 +72,11 @@ fn pixels_and_metrics_are_those_of_the_library() {
                     nfr_rasterizer_draw(handles.1, glyph, ppem, x, y, &raw mut lent, &raw mut placement);
                 assert_eq!((status, placement), (NFR_OK, expected.placement.into()));
                 assert_eq!(std::slice::from_raw_parts(lent, expected.pixels.len()), expected.pixels);
+                let mono = rasterizer.render_mono(glyph, options).unwrap();
+                let status =
+                    nfr_rasterizer_draw_mono(handles.1, glyph, ppem, x, y, &raw mut lent, &raw mut placement);
+                assert_eq!((status, placement), (NFR_OK, mono.placement.into()));
+                assert_eq!(std::slice::from_raw_parts(lent, mono.bits.len()), mono.bits);
                 let (start, len) = (pixels.as_mut_ptr(), pixels.len());
                 let status = nfr_rasterizer_render_into(
                     handles.1,

@@ -7,6 +7,10 @@ use embedded_graphics::pixelcolor::{
 
 /// A colour that coverage mixes with another. All colours of embedded-graphics are; implement it for a display's own.
 pub trait Blend: PixelColor {
+    /// Whether there are two colours only. Text is drawn in black and white then, with drop-out control, by
+    /// [`nfr::Rasterizer::draw_mono`]: its coverage is 0 or 255.
+    const IS_BINARY: bool = false;
+
     /// The colour of a pixel of this colour that text of the colour `text` covers by `coverage`/255: this one at 0, `text` at
     /// 255.
     #[must_use]
@@ -46,8 +50,10 @@ macro_rules! blend_grey {
 blend_rgb!(Rgb555, Rgb565, Rgb666, Rgb888, Bgr555, Bgr565, Bgr666, Bgr888);
 blend_grey!(Gray2, Gray4, Gray8);
 
-/// A pixel of which at least half is covered has the text's colour, as in [`pack`](crate::pack).
+/// A pixel whose centre is inside the outline has the text's colour, and what fills the gaps of thin strokes.
 impl Blend for BinaryColor {
+    const IS_BINARY: bool = true;
+
     fn blend(self, text: Self, coverage: u8) -> Self {
         if coverage >= 128 { text } else { self }
     }

@@ -3,7 +3,7 @@
 use core::cell::{Cell, RefCell};
 use core::fmt;
 
-use nfr::{BitmapRef, DrawOptions, Error, Font, MissingModel, Rasterizer};
+use nfr::{BitmapRef, DrawOptions, Error, Font, MissingModel, MonoBitmapRef, Rasterizer};
 
 /// What is drawn for a character that the font lacks, and for a glyph without a model. A damaged model is skipped in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -134,13 +134,24 @@ impl Face {
         ppem: f32,
         take: impl FnOnce(BitmapRef<'_>) -> T,
     ) -> Option<T> {
-        match self.rasterizer.borrow_mut().draw(glyph, ppem) {
-            Ok(bitmap) => Some(take(bitmap)),
-            Err(error) => {
-                self.note(character, Reason::Glyph(error));
-                None
-            }
-        }
+        let mut rasterizer = self.rasterizer.borrow_mut();
+        self.noted(character, rasterizer.draw(glyph, ppem).map(take))
+    }
+
+    /// The same in black and white.
+    pub(crate) fn draw_mono<T>(
+        &self,
+        character: char,
+        glyph: u32,
+        ppem: f32,
+        take: impl FnOnce(MonoBitmapRef<'_>) -> T,
+    ) -> Option<T> {
+        let mut rasterizer = self.rasterizer.borrow_mut();
+        self.noted(character, rasterizer.draw_mono(glyph, ppem).map(take))
+    }
+
+    fn noted<T>(&self, character: char, drawn: Result<T, Error>) -> Option<T> {
+        drawn.map_err(|error| self.note(character, Reason::Glyph(error))).ok()
     }
 
     fn note(&self, character: char, reason: Reason) {

@@ -5,7 +5,8 @@ use core::fmt;
 /// Bits a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Depth {
-    /// Black and white: a pixel is set if at least half of it is covered.
+    /// Black and white: a pixel is set if at least half of it is covered. Thin strokes may break; [`nfr::Rasterizer::draw_mono`]
+    /// draws text without gaps, packed in the same way.
     One,
     /// 4 levels.
     Two,

@@ -1,11 +1,14 @@
 //! embedded-graphics' interface for text.
 
+use alloc::vec::Vec;
+
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::primitives::{PointsIter, Rectangle};
 use embedded_graphics::text::renderer::{TextMetrics, TextRenderer};
 use embedded_graphics::text::{Baseline, DecorationColor};
+use nfr::{MonoBitmapRef, Placement};
 
 use crate::blend::Blend;
 use crate::ink::Ink;
@@ -66,15 +69,23 @@ impl<C: Blend> Style<'_, C> {
         target: &mut D,
     ) -> Result<Ink, D::Error> {
         let Some(text) = self.text else { return Ok(before) };
-        let ink = self.face.draw(character, glyph, self.ppem, |bitmap| {
-            let placement = bitmap.placement;
+        let at = |placement: Placement| {
             let left = origin.x.saturating_add(placement.left);
             let top = origin.y.saturating_sub(placement.top);
             let area = Rectangle::new(Point::new(left, top), Size::new(placement.width, placement.height));
             // What lies outside of the display is not copied.
             let seen = area.intersection(&target.bounding_box());
-            (!seen.is_zero_sized()).then(|| Ink::new(area, bitmap.pixels.to_vec()))
-        });
+            (!seen.is_zero_sized()).then_some(area)
+        };
+        let ink = if C::IS_BINARY {
+            self.face.draw_mono(character, glyph, self.ppem, |bitmap| {
+                at(bitmap.placement).map(|area| Ink::new(area, unpacked(bitmap)))
+            })
+        } else {
+            self.face.draw(character, glyph, self.ppem, |bitmap| {
+                at(bitmap.placement).map(|area| Ink::new(area, bitmap.pixels.to_vec()))
+            })
+        };
         let Some(ink) = ink.flatten().map(|ink| ink.over(&before)) else { return Ok(before) };
         match self.background {
             Some(ground) => {
@@ -90,6 +101,13 @@ impl<C: Blend> Style<'_, C> {
         }
         Ok(ink)
     }
+}
+
+/// A byte a pixel: 255 where it is black.
+fn unpacked(bitmap: MonoBitmapRef<'_>) -> Vec<u8> {
+    let width = bitmap.placement.width;
+    let level = |row: &[u8], x: u32| if row[x as usize / 8] & (0x80 >> (x % 8)) == 0 { 0 } else { 255 };
+    bitmap.rows().flat_map(|row| (0..width).map(move |x| level(row, x))).collect()
 }
 
 impl<C: Blend> TextRenderer for Style<'_, C> {

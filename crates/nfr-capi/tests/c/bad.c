@@ -54,6 +54,10 @@ static void check_null(bytes file)
     CHECK(nfr_rasterizer_draw(NULL, a, 16, 0, 0, &lent, &p) == NFR_NULL_POINTER);
     CHECK(nfr_rasterizer_draw(r, a, 16, 0, 0, NULL, &p) == NFR_NULL_POINTER);
     CHECK(nfr_rasterizer_draw(r, a, 16, 0, 0, &lent, NULL) == NFR_NULL_POINTER);
+    CHECK(nfr_rasterizer_draw_mono(NULL, a, 16, 0, 0, &lent, &p) == NFR_NULL_POINTER);
+    CHECK(nfr_rasterizer_draw_mono(r, a, 16, 0, 0, NULL, &p) == NFR_NULL_POINTER);
+    CHECK(nfr_rasterizer_draw_mono(r, a, 16, 0, 0, &lent, NULL) == NFR_NULL_POINTER);
+    CHECK(nfr_rasterizer_draw_mono(r, a, 16, NAN, 0, &lent, &p) == NFR_INVALID_OFFSET);
     CHECK(nfr_rasterizer_render_into(NULL, a, 16, 0, 0, pixel, 1, 1, &p) == NFR_NULL_POINTER);
     CHECK(nfr_rasterizer_render_into(r, a, 16, 0, 0, NULL, 1, 1, &p) == NFR_NULL_POINTER);
     CHECK(nfr_rasterizer_render_into(r, a, 16, 0, 0, pixel, 1, 1, NULL) == NFR_NULL_POINTER);
@@ -97,6 +101,10 @@ static nfr_status draw_some(const unsigned char *data, size_t len)
             (void)hash_of(lent, (size_t)p.width * p.height);
         else if (first == NFR_OK)
             first = status;
+        status = nfr_rasterizer_draw_mono(r, glyph, c % 2 ? 11.0f : 50.0f, 0, 0, &lent, &p);
+        CHECK(is_status(status));
+        if (status == NFR_OK)
+            (void)hash_of(lent, (size_t)(p.width + 7) / 8 * p.height);
     }
     nfr_rasterizer_free(r);
     nfr_font_free(font);

@@ -1,6 +1,6 @@
 //! Drawing the glyphs of a strike.
 
-use nfr::{Font, Limits, MissingModel, Rasterizer};
+use nfr::{Font, Limits, MissingModel, MonoBitmapRef, Placement, Rasterizer};
 
 use super::face::Face;
 use super::strike::{Glyph, Strike};
@@ -28,13 +28,25 @@ pub(super) fn draw(
     let size = f32::from(ppem);
     let mut glyphs = Vec::with_capacity(face.gids.len());
     for &gid in &face.gids {
-        let drawn = rasterizer.draw(gid.into(), size)?;
-        let mut glyph = Glyph::new(gid, drawn.placement, drawn.pixels, bits);
+        let mut glyph = if bits == 1 {
+            let drawn = rasterizer.draw_mono(gid.into(), size)?;
+            Glyph::new(gid, drawn.placement, &unpacked(drawn), bits)
+        } else {
+            let drawn = rasterizer.draw(gid.into(), size)?;
+            Glyph::new(gid, drawn.placement, drawn.pixels, bits)
+        };
         glyph.advance = font.advance(gid.into(), size);
         glyph.hinted_advance = rasterizer.hinted_advance(gid.into(), size)?;
         glyphs.push(glyph);
     }
     Ok(Strike { ppem, bits, line: font.line_metrics(size), glyphs })
+}
+
+/// A byte a pixel: 255 where it is black.
+fn unpacked(bitmap: MonoBitmapRef<'_>) -> Vec<u8> {
+    let Placement { width, height, .. } = bitmap.placement;
+    let level = |x, y| if bitmap.is_black(x, y) { 255 } else { 0 };
+    (0..height).flat_map(|y| (0..width).map(move |x| level(x, y))).collect()
 }
 
 /// Checks that all glyphs have models.

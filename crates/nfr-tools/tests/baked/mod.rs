@@ -73,10 +73,17 @@ impl Expected {
         Self { font, rasterizer }
     }
 
-    /// A glyph with coverages rounded to the nearest level.
+    /// A glyph in black and white, or with coverages rounded to the nearest level.
     fn drawn(&mut self, gid: u32, ppem: u16, bits: u8) -> Drawn {
         let most = f64::from((1u16 << bits) - 1);
         let advance = self.rasterizer.hinted_advance(gid, ppem.into()).unwrap().round() as i32;
+        if bits == 1 {
+            let bitmap = self.rasterizer.render_mono(gid, f32::from(ppem)).unwrap();
+            let place = bitmap.placement;
+            let levels = (0..place.height).flat_map(|y| (0..place.width).map(move |x| (x, y)));
+            let levels = levels.map(|(x, y)| u8::from(bitmap.is_black(x, y))).collect();
+            return Drawn::new(levels, place.width as usize, (place.left, place.top), advance);
+        }
         let bitmap = self.rasterizer.render(gid, f32::from(ppem)).unwrap();
         let level = |coverage: &u8| (f64::from(*coverage) * most / 255.0).round() as u8;
         let origin = (bitmap.placement.left, bitmap.placement.top);
