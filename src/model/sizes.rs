@@ -2,6 +2,20 @@
 
 use crate::constants::MAX_TRAINED_PPEM;
 
+/// Where the outlines and the hints of a font's models come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Origin {
+    /// TrueType outlines.
+    #[default]
+    TrueType,
+    /// Cubic curves that are quadratic ones now, with hints for quadratic ones, such as an autohinter's. At hinted sizes curves become shorter
+    /// lines.
+    Cubic,
+    /// The same with the hints of PostScript outlines: points follow the tracks of the levels beside theirs, and hinted coordinates are
+    /// rounded down.
+    PostScript,
+}
+
 /// Units and trained sizes, which are the same for all glyphs of a font. Every whole size from the first to the last is
 /// a trained one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,7 +24,7 @@ pub struct Scale {
     first_ppem: u16,
     last_ppem: u16,
     whole_sizes: bool,
-    is_postscript: bool,
+    origin: Origin,
 }
 
 impl Scale {
@@ -20,7 +34,7 @@ impl Scale {
         let units_fit = units_per_em >= 16 && units_per_em <= 16384;
         let sizes_fit = first_ppem >= 1 && first_ppem <= last_ppem && last_ppem <= MAX_TRAINED_PPEM;
         if units_fit && sizes_fit {
-            Some(Self { units_per_em, first_ppem, last_ppem, whole_sizes: false, is_postscript: false })
+            Some(Self { units_per_em, first_ppem, last_ppem, whole_sizes: false, origin: Origin::TrueType })
         } else {
             None
         }
@@ -33,16 +47,20 @@ impl Scale {
         Self { whole_sizes, ..self }
     }
 
-    /// The same for hints of PostScript outlines: coordinates are rounded down where hinting leaves them alone, and curves become
-    /// shorter lines.
+    /// The same for outlines and hints of another origin.
     #[must_use]
-    pub const fn with_postscript(self, is_postscript: bool) -> Self {
-        Self { is_postscript, ..self }
+    pub const fn with_origin(self, origin: Origin) -> Self {
+        Self { origin, ..self }
+    }
+
+    /// Where the outlines and the hints come from.
+    pub fn origin(&self) -> Origin {
+        self.origin
     }
 
     /// Whether the hints were those of PostScript outlines.
     pub fn is_postscript(&self) -> bool {
-        self.is_postscript
+        self.origin == Origin::PostScript
     }
 
     /// Font units in an em.

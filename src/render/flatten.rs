@@ -5,17 +5,27 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::model::outline::OutlinePoints;
-use crate::number::{UNIT, UNIT_BITS};
+use crate::number::UNIT;
 
-/// A curve is split until its second difference is at most this many units along both axes.
-pub(super) const FLAT: i32 = UNIT / 4;
-/// The same for outlines that were PostScript's: their models learn from cubic curves that are filled almost exactly, against which
-/// coarser lines would be an error.
-pub(super) const FINE: i32 = UNIT / 64;
+/// How finely outlines are computed, in units.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Precision {
+    /// A curve is split until its second difference is at most this along both axes.
+    flat: i32,
+    /// The points that two control points imply are rounded towards 0 to a multiple of this.
+    implied: i32,
+}
+
+impl Precision {
+    /// That of zeno and FreeType.
+    pub(super) const TRUE_TYPE: Self = Self { flat: UNIT / 4, implied: UNIT / 64 };
+    /// That of outlines that were PostScript's: their models learn from cubic curves that are filled almost exactly, against which
+    /// coarser lines would be an error.
+    pub(super) const FINE: Self = Self { flat: UNIT / 64, implied: 1 };
+}
+
 /// The most vertices of a glyph.
 const MAX_VERTICES: usize = 1 << 18;
-/// Units in 1/64 pixel, as a shift.
-const FRACTION: i32 = UNIT_BITS - 6;
 
 /// Closed polygons, in units from the glyph's origin, y up.
 #[derive(Debug, Clone, Default)]
@@ -26,8 +36,8 @@ pub(super) struct Polygons {
     pub(super) ends: Vec<usize>,
     /// The least and the greatest coordinates along x and y, once they are [measured](Self::measure).
     pub(super) bounds: [[i32; 2]; 2],
-    /// The largest second difference of a curve that is added as a line.
-    flat: i32,
+    /// How finely outlines that are added are computed.
+    precision: Precision,
 }
 
 type Point = [i32; 2];
@@ -61,7 +71,7 @@ impl Polygons {
             + self.ends.capacity() * size_of::<usize>()
     }
 
-    /// Adds an outline whose points are at `places`, in 1/64 pixel, moved by `offset` in the same, and made `stretch` times as wide and
+    /// Adds an outline whose points are at `places`, in units, moved by `offset` in 1/64 pixel, and made `stretch` times as wide and
     /// high. Contours of one or two points, which
     /// fonts use as anchors, have no area and are left out.
     pub(super) fn add(
@@ -70,9 +80,9 @@ impl Polygons {
         places: &[Vec<i32>; 2],
         offset: Point,
         stretch: Point,
-        flat: i32,
+        precision: Precision,
     ) {
-        self.flat = flat;
+        self.precision = precision;
         for contour in outline.contours().filter(|contour| contour.len() > 2) {
             self.add_contour(outline, places, contour, offset, stretch);
         }
@@ -88,13 +98,15 @@ impl Polygons {
     ) {
         let [Some(x), Some(y)] = places.each_ref().map(|places| places.get(contour.clone())) else { return };
         let Some(on_curve) = outline.on_curve.get(contour) else { return };
+        let offset = offset.map(|v| v.wrapping_mul(UNIT / 64));
         let moved = |v: i32, axis: usize| v.wrapping_add(offset[axis]).wrapping_mul(stretch[axis]);
+        let grain = self.precision.implied;
         let point = |k: usize| [moved(x[k], 0), moved(y[k], 1)];
         let Some(last) = on_curve.len().checked_sub(1) else { return };
         // A contour begins at its first point on the curve, or else between its last and its first point.
         let first = on_curve.iter().position(|on| *on);
-        let start = first.map_or_else(|| middle(point(last), point(0)), point);
-        let mut from = scaled(start);
+        let start = first.map_or_else(|| middle(point(last), point(0), grain), point);
+        let mut from = start;
         let mut control: Option<Point> = None;
         let begin = first.map_or(0, |first| first + 1);
         for k in (begin..=last).chain(0..begin.saturating_sub(1)) {
@@ -104,22 +116,21 @@ impl Polygons {
                     control = Some(here);
                     continue;
                 }
-                (Some(before), false) => middle(before, here),
+                (Some(before), false) => middle(before, here, grain),
                 (_, true) => here,
             };
-            let to = scaled(to);
             self.piece(from, control, to);
             from = to;
             control = (!on_curve[k]).then_some(here);
         }
-        self.piece(from, control, scaled(start));
+        self.piece(from, control, start);
         self.ends.push(self.vertices[0].len());
     }
 
     fn piece(&mut self, from: Point, control: Option<Point>, to: Point) {
         match control {
             None => self.push(to),
-            Some(control) => self.curve(from, scaled(control), to),
+            Some(control) => self.curve(from, control, to),
         }
     }
 
@@ -142,7 +153,7 @@ impl Polygons {
         if self.are_too_many() {
             bend = 0;
         }
-        while bend > self.flat {
+        while bend > self.precision.flat {
             bend >>= 2;
             depth += 1;
         }
@@ -163,14 +174,9 @@ impl Polygons {
     }
 }
 
-/// The point that two control points imply between them, rounded towards 0 as FreeType does.
-fn middle(a: Point, b: Point) -> Point {
-    [0, 1].map(|k| a[k].wrapping_add(b[k]) / 2)
-}
-
-/// In units.
-fn scaled(point: Point) -> Point {
-    point.map(|v| v.wrapping_shl(FRACTION as u32))
+/// The point that two control points imply between them, rounded towards 0 to a multiple of `grain`, as FreeType does.
+fn middle(a: Point, b: Point, grain: i32) -> Point {
+    [0, 1].map(|k| a[k].wrapping_add(b[k]) / (2 * grain) * grain)
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 use alloc::vec::Vec;
 
 use super::area::Area;
-use super::flatten::{FINE, FLAT, Polygons};
+
+use super::flatten::{Polygons, Precision};
 use super::font::Font;
 use super::scratch::Scratch;
 use super::strips::{STRIP, in_strips};
@@ -11,8 +12,8 @@ use crate::bitmap::Canvas;
 use crate::constants::MAX_SIDE;
 use crate::error::Error;
 use crate::limits::{Budget, Limits};
-use crate::model::outline::{OutlineModel, OutlinePoints, OutlineWeights, hint};
-use crate::model::sizes::HintedSize;
+use crate::model::outline::{OutlineModel, OutlinePoints, OutlineWeights, hint, in_64ths};
+use crate::model::sizes::{HintedSize, Origin};
 use crate::number::{UNIT, UNIT_BITS, round};
 use crate::options::DrawOptions;
 use crate::placement::Placement;
@@ -79,8 +80,9 @@ pub(super) fn flatten<'m>(
     for (model, offset) in models {
         hint(model, size, points);
         check_reach(points, offset)?;
-        let is_fine = size.strength > 0.0 && model.scale.is_postscript();
-        polygons.add(&model.points, points, offset, stretch, if is_fine { FINE } else { FLAT });
+        let is_fine = size.strength > 0.0 && model.scale.origin() != Origin::TrueType;
+        let precision = if is_fine { Precision::FINE } else { Precision::TRUE_TYPE };
+        polygons.add(&model.points, points, offset, stretch, precision);
         if polygons.are_too_many() {
             budget.spend(u64::MAX)?;
         }
@@ -103,7 +105,7 @@ pub(super) fn leftmost<'m>(
     for (model, offset) in models {
         hint(model, size, &mut scratch.outline);
         check_reach(&scratch.outline, offset)?;
-        let own = scratch.outline[0].iter().min().map(|x| x + offset[0]);
+        let own = scratch.outline[0].iter().min().map(|x| in_64ths(*x) + offset[0]);
         left = left.min(own).or(own).or(left);
     }
     Ok(left)
@@ -166,7 +168,7 @@ const MAX_REACH: u32 = 1 << 24;
 /// Checks that polygons can be computed in 32 bits.
 pub(super) fn check_reach(points: &[Vec<i32>; 2], offset: [i32; 2]) -> Result<(), Error> {
     let reach = |axis: usize| {
-        let points = points[axis].iter().fold(0, |reach, v| reach.max(v.unsigned_abs()));
+        let points = points[axis].iter().fold(0, |reach, v| reach.max(in_64ths(*v).unsigned_abs()));
         points.saturating_add(offset[axis].unsigned_abs())
     };
     let [width, height] = [reach(0), reach(1)];

@@ -65,7 +65,7 @@ pub const SLOTS: usize = ELEMENTS.1;
 pub const MIXERS: usize = ELEMENTS.2;
 
 /// Contexts and bins of each element of outlines.
-const OUTLINE_BINARISATIONS: [([usize; 3], usize); 18] = [
+const OUTLINE_BINARISATIONS: [([usize; 3], usize); 19] = [
     ([1, 0, 0], 4),
     ([24, 24, 24], 1),
     ([6, 0, 0], 1),
@@ -84,6 +84,7 @@ const OUTLINE_BINARISATIONS: [([usize; 3], usize); 18] = [
     ([9, 0, 0], 8),
     ([1, 0, 0], 4),
     ([4, 0, 0], 12),
+    ([1, 0, 0], 1),
 ];
 
 /// The kind of a message.
@@ -123,6 +124,8 @@ pub const OUTLINE_GRID_OFFSET: Element = OUTLINE_ELEMENTS.0[15];
 pub const ADVANCES: Element = OUTLINE_ELEMENTS.0[16];
 /// The bytes of a section of a message.
 pub const SECTION: Element = OUTLINE_ELEMENTS.0[17];
+/// Whether a track moves its own points alone.
+pub const LOCAL: Element = OUTLINE_ELEMENTS.0[18];
 
 /// The number of slots of outlines.
 pub const OUTLINE_SLOTS: usize = OUTLINE_ELEMENTS.1;

@@ -2,7 +2,7 @@
 
 use read_fonts::types::Tag;
 
-use crate::model::sizes::Scale;
+use crate::model::sizes::{Origin, Scale};
 use crate::target::Target;
 
 /// The table's tag.
@@ -28,8 +28,10 @@ pub const OUTLINE_MODELS: u8 = 4;
 pub const CERTIFICATE: u8 = 8;
 /// The flag that says that the modes of drop-out control follow the certificate.
 pub const DROPOUT: u8 = 16;
+/// The flag that says that the outlines had cubic curves.
+pub const CUBIC: u8 = 32;
 /// The flag that says that the hints were those of PostScript outlines.
-pub const POSTSCRIPT: u8 = 32;
+pub const POSTSCRIPT: u8 = 64;
 /// The most parts of a composed glyph.
 pub const MAX_PARTS: usize = 16;
 /// The most bytes that the grid offsets of parts take, decoded.
@@ -48,9 +50,8 @@ pub struct Header {
     pub outline_hash: u64,
     /// Whether the font has no outlines of the glyphs that it has models for.
     pub outlines_dropped: bool,
-    /// Whether the hints were those of PostScript outlines: at hinted sizes, coordinates that they leave alone are rounded down, and
-    /// curves become shorter lines.
-    pub is_postscript: bool,
+    /// Where the outlines and the hints come from.
+    pub origin: Origin,
     /// The seed of the training.
     pub seed: u64,
     /// Optimiser steps.
@@ -75,10 +76,28 @@ impl Header {
         }
     }
 
+    /// The flags that stand for the origin in the table.
+    pub fn origin_flags(&self) -> u8 {
+        match self.origin {
+            Origin::TrueType => 0,
+            Origin::Cubic => CUBIC,
+            Origin::PostScript => CUBIC | POSTSCRIPT,
+        }
+    }
+
+    /// The origin that flags stand for.
+    pub(super) fn origin_of(flags: u8) -> Origin {
+        match flags & (CUBIC | POSTSCRIPT) {
+            0 => Origin::TrueType,
+            CUBIC => Origin::Cubic,
+            _ => Origin::PostScript,
+        }
+    }
+
     /// The trained sizes as models know them; `None` for units or sizes that the format does not allow.
     pub fn scale(&self, units_per_em: u16) -> Option<Scale> {
         let scale = Scale::new(units_per_em, self.first_ppem, self.last_ppem)?;
-        Some(scale.with_postscript(self.is_postscript))
+        Some(scale.with_origin(self.origin))
     }
 }
 

@@ -11,7 +11,7 @@ use super::dropout::DropoutModes;
 use super::gids::{Gids, find, outside};
 use super::header::{
     BLOCK, CERTIFICATE, DROPOUT, HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, NETWORKS,
-    OUTLINE_MODELS, OUTLINES_DROPPED, POSTSCRIPT,
+    OUTLINE_MODELS, OUTLINES_DROPPED,
 };
 use super::network_index::NetworkIndex;
 use super::outline::{self, OutlineIndex};
@@ -76,7 +76,7 @@ impl<'a> Table<'a> {
             last_ppem: u16_at(8)?,
             outline_hash: u64_at(12)?,
             outlines_dropped: u8_at(5)? & OUTLINES_DROPPED != 0,
-            is_postscript: u8_at(5)? & POSTSCRIPT != 0,
+            origin: Header::origin_of(u8_at(5)?),
             seed: u64_at(20)?,
             steps: u16_at(32)?,
             knots: u8_at(34)?,

@@ -7,17 +7,19 @@ use nfr::{Font, Rasterizer, Target};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::ppem::PpemList;
 use nfr_convert::teacher::Teacher;
-use nfr_convert::{Conversion, Error, Options, Quality, convert};
+use nfr_convert::{Conversion, Error, Hinter, Options, Quality, convert};
 use read_fonts::{FontRef, TableProvider};
 
 use samples::{Warnings, gid, gids, table, with_tables};
 
-/// The error that outline models of printable ASCII have at most, over all sizes, at the default quality: `figures` says 0.0007.
-const MAX_MAE: f64 = 0.0008;
-/// The same at quality 100: 0.00056.
-const MAX_MAE_EXACT: f64 = 0.0006;
-/// The error of the few glyphs of the small fonts at the default quality: 0.00095.
-const MAX_MAE_SMALL: f64 = 0.001;
+/// The error that outline models of printable ASCII have at most, over all sizes, at the default quality: `figures` says 0.00036.
+const MAX_MAE: f64 = 0.0005;
+/// The same at quality 100: 0.00029.
+const MAX_MAE_EXACT: f64 = 0.0004;
+/// The bytes that a model takes at most at the default quality, for smooth and for mono: 122.
+const MAX_BYTES: usize = 140;
+/// The error of the few glyphs of the small fonts at the default quality.
+const MAX_MAE_SMALL: f64 = 0.0006;
 
 fn cantarell() -> Vec<u8> {
     std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/fonts/Cantarell-Regular.otf")).unwrap()
@@ -65,9 +67,20 @@ fn the_models_of_a_postscript_font_draw_what_its_hints_draw() {
         (Target::Smooth, exact, MAX_MAE_EXACT),
     ] {
         let options = Options { target, ..Options::default().with_quality(quality) };
-        let [neural, unhinted] = errors(&data, &converted_with(&data, Some(&ascii), options));
+        let conversion = converted_with(&data, Some(&ascii), options);
+        let [neural, unhinted] = errors(&data, &conversion);
         assert!(neural < most && unhinted > 15.0 * neural, "{target}: {neural}, unhinted {unhinted}");
+        let bytes = conversion.glyphs.iter().map(|glyph| glyph.bytes).sum::<usize>() / ascii.len();
+        assert!(quality == exact || bytes < MAX_BYTES, "{target}: {bytes} bytes a glyph");
     }
+}
+
+#[test]
+fn an_autohinted_postscript_font_is_learnt_as_well() {
+    let data = cantarell();
+    let options = Options { hinter: Hinter::Auto, ..Options::default() };
+    let [neural, unhinted] = errors(&data, &converted_with(&data, Some("Hamburgefonstiv&@"), options));
+    assert!(neural < MAX_MAE && unhinted > 15.0 * neural, "{neural}, unhinted {unhinted}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use nfr::internals::head_units;
+use nfr::internals::model::sizes::Origin;
 use nfr::internals::network::NetworkWeights;
 use nfr::internals::network::Precision;
 use nfr::internals::network::{Head, encode};
@@ -64,7 +65,7 @@ pub fn with_networks(
         last_ppem,
         outline_hash: outline_hash(&font)?,
         outlines_dropped: false,
-        is_postscript: false,
+        origin: Origin::TrueType,
         glyph_count: glyph_count(&font)?.try_into().unwrap_or(0),
         ..*about
     };

@@ -9,6 +9,7 @@ use std::sync::LazyLock;
 
 use nfr::internals::model::compose::{Composed, Part};
 use nfr::internals::model::gridfit::{Scale, Weights};
+use nfr::internals::model::sizes::Origin;
 use nfr::internals::network::Precision;
 use nfr::internals::network::{Architecture, CONDITIONED, Network, NetworkWeights, TRUNK_LAYERS};
 use nfr::internals::network::{Head, decode};
@@ -31,7 +32,7 @@ const ABOUT: Header = Header {
     last_ppem: 64,
     outline_hash: 0,
     outlines_dropped: false,
-    is_postscript: false,
+    origin: Origin::TrueType,
     seed: 9,
     steps: 700,
     knots: 0,

@@ -3,59 +3,133 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::points::OutlinePoints;
-use super::weights::{AxisHints, OutlineModel, UNTOUCHED};
-use crate::model::sizes::HintedSize;
-use crate::number::{div_fixed, mul_fixed, round};
+use super::levels::Contour;
+use super::weights::{AxisHints, Correction, OutlineModel, UNTOUCHED};
+use crate::model::sizes::{HintedSize, Scale};
+use crate::number::{UNIT_BITS, div_fixed, mul_fixed, round};
 
 /// The factor from font units to 1/64 pixel, in 1/65536, as FreeType computes it. Sizes are rounded to 1/64 pixel.
 pub fn scale_of(ppem: f32, units_per_em: u16) -> i32 {
     div_fixed(round(ppem * 64.0), units_per_em.into())
 }
 
-/// The points of a model at a size, in 1/64 pixel from the glyph's origin, y up.
+/// The points of a model at a size, in units of 1/256 pixel from the glyph's origin, y up.
 pub fn hint(model: &OutlineModel, size: &HintedSize, points: &mut [Vec<i32>; 2]) {
-    let units = model.scale.units_per_em();
+    let units_per_em = model.scale.units_per_em();
     let is_hinted = size.strength > 0.0 && model.has_size(size.index);
     for (axis, (hints, out)) in model.weights.axes.iter().zip(points).enumerate() {
         // An axis that hinting does not touch follows the size itself.
         let moves_axis = is_hinted && (axis == 1 || hints.is_hinted);
-        let scale = scale_of(if moves_axis { size.trained_ppem } else { size.ppem }, units);
+        let scale = scale_of(if moves_axis { size.trained_ppem } else { size.ppem }, units_per_em);
         let units = &model.points.coordinates[axis];
+        out.clear();
         if is_hinted && !hints.is_hinted && model.scale.is_postscript() {
-            scaled(units, out, |v| rounded_down(v, scale));
+            out.extend(units.iter().map(|v| in_units(rounded_down((*v).into(), scale))));
+        } else if moves_axis {
+            out.resize(units.len(), 0);
+            let interpolation = Interpolation::of(axis, &model.scale);
+            let tracks =
+                Tracks::new(hints, hints.moves_at(size.index), &model.points.on_curve, interpolation);
+            for contour in model.points.contours() {
+                tracks.place(units, contour, scale, out);
+            }
+            correct(hints.corrections_at(size.index), out);
         } else {
-            scaled(units, out, |v| mul_fixed(v.into(), scale));
-        }
-        if moves_axis {
-            move_points(&model.points, axis, hints, size.index, out);
+            out.extend(units.iter().map(|v| in_units(mul_fixed((*v).into(), scale))));
         }
     }
 }
 
-fn scaled(coordinates: &[i16], out: &mut Vec<i32>, to: impl Fn(i16) -> i32) {
-    out.clear();
-    out.extend(coordinates.iter().map(|v| to(*v)));
+/// Units in 1/64 pixel, as a shift.
+const FRACTION_BITS: i32 = UNIT_BITS - 6;
+
+/// From 1/64 pixel to units of 1/256 pixel.
+pub fn in_units(position: i32) -> i32 {
+    position.wrapping_shl(FRACTION_BITS as u32)
+}
+
+/// From units of 1/256 pixel to 1/64 pixel, to the nearest, halves up.
+pub fn in_64ths(position: i32) -> i32 {
+    position.wrapping_add(1 << (FRACTION_BITS - 1)) >> FRACTION_BITS
+}
+
+fn correct(corrections: &[Correction], out: &mut [i32]) {
+    for correction in corrections {
+        if let Some(at) = out.get_mut(usize::from(correction.point)) {
+            *at = in_units(in_64ths(*at).wrapping_add(correction.by.into()));
+        }
+    }
 }
 
 /// A coordinate in 1/64 pixel, rounded down as FreeType does it where it hints PostScript outlines: the scale becomes one of whole
 /// pixels first (`cf2_getScaleAndHintFlag` and `cf2_builder_lineTo`).
-pub fn rounded_down(units: i16, scale: i32) -> i32 {
+pub fn rounded_down(units: i32, scale: i32) -> i32 {
     ((i64::from(units) * ((i64::from(scale) + 32) / 64)) >> 10) as i32
 }
 
-/// Moves the points of tracks, interpolates the others, and corrects some.
-fn move_points(points: &OutlinePoints, axis: usize, hints: &AxisHints, size: usize, out: &mut [i32]) {
-    let moves = hints.moves_at(size);
-    if !moves.is_empty() {
-        let units = &points.coordinates[axis];
-        for contour in points.contours() {
-            move_contour(units, contour, &hints.track_of, moves, out);
+/// What moves the points that no track moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The two points of tracks beside them on their contour, as `IUP` does (OpenType 1.9, "TrueType instruction set", IUP; with
+    /// FreeType's roundings).
+    Contour,
+    /// The two tracks whose levels are beside theirs, on whichever contour, as PostScript's hints do: a glyph's stems make a
+    /// piecewise-linear map of heights (Adobe Technical Note #5177, "The Type 2 charstring format"; FreeType's `pshints.c`).
+    Level,
+}
+
+impl Interpolation {
+    /// That of an axis of a font's models.
+    pub fn of(axis: usize, scale: &Scale) -> Self {
+        if axis == 1 && scale.is_postscript() { Self::Level } else { Self::Contour }
+    }
+}
+
+/// Tracks at a size.
+#[derive(Debug, Clone, Copy)]
+pub struct Tracks<'a> {
+    pub(super) levels: &'a [i16],
+    pub(super) track_of: &'a [u8],
+    pub(super) moves: &'a [i16],
+    pub(super) is_local: &'a [bool],
+    pub(super) on_curve: &'a [bool],
+    interpolation: Interpolation,
+}
+
+impl<'a> Tracks<'a> {
+    /// Tracks that are moved so far from their scaled levels, in 1/64 pixel.
+    pub fn new(
+        hints: &'a AxisHints,
+        moves: &'a [i16],
+        on_curve: &'a [bool],
+        interpolation: Interpolation,
+    ) -> Self {
+        Self {
+            levels: &hints.levels,
+            track_of: &hints.track_of,
+            is_local: &hints.is_local,
+            moves,
+            on_curve,
+            interpolation,
         }
     }
-    for correction in hints.corrections_at(size) {
-        if let Some(at) = out.get_mut(usize::from(correction.point)) {
-            *at += i32::from(correction.by);
+
+    /// Puts the points of a contour in their places, in units of 1/256 pixel. `scale` leads from font units to 1/64 pixel, in 1/65536.
+    pub fn place(&self, units: &[i16], contour: Range<usize>, scale: i32, out: &mut [i32]) {
+        let (Some(own), Some(places)) = (units.get(contour.clone()), out.get_mut(contour.clone())) else {
+            return;
+        };
+        match self.interpolation {
+            Interpolation::Contour => {
+                for (place, units) in places.iter_mut().zip(own) {
+                    *place = mul_fixed((*units).into(), scale);
+                }
+                if !self.moves.is_empty() {
+                    move_contour(units, contour.clone(), self.track_of, self.moves, out);
+                }
+                out[contour].iter_mut().for_each(|place| *place = in_units(*place));
+            }
+            Interpolation::Level => Contour { tracks: self, units, scale }.place(contour, out),
         }
     }
 }
@@ -63,9 +137,8 @@ fn move_points(points: &OutlinePoints, axis: usize, hints: &AxisHints, size: usi
 /// A point that a track has moved: its coordinate in font units, and its plain and its hinted position.
 type Touched = (i32, i32, i32);
 
-/// Moves the points of a contour: those of tracks by their tracks' moves, the others as `IUP` does (OpenType 1.9, "TrueType
-/// instruction set", IUP; with FreeType's roundings).
-pub fn move_contour(units: &[i16], contour: Range<usize>, track_of: &[u8], moves: &[i16], out: &mut [i32]) {
+/// Moves the points of a contour: those of tracks by their tracks' moves, the others as `IUP` does.
+fn move_contour(units: &[i16], contour: Range<usize>, track_of: &[u8], moves: &[i16], out: &mut [i32]) {
     let Some(tracks) = track_of.get(contour.clone()) else { return };
     let Some(first) = tracks.iter().position(|track| *track != UNTOUCHED) else { return };
     let touch = |at: usize, out: &mut [i32]| {

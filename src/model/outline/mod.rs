@@ -3,9 +3,10 @@
 //! one.
 
 mod hint;
+mod levels;
 mod points;
 mod weights;
 
-pub use hint::{hint, interpolated, move_contour, rounded_down, scale_of};
+pub use hint::{Interpolation, Tracks, hint, in_64ths, in_units, interpolated, rounded_down, scale_of};
 pub use points::OutlinePoints;
 pub use weights::{AxisHints, Correction, MAX_TRACKS, OutlineModel, OutlineWeights, UNTOUCHED};

@@ -32,6 +32,9 @@ pub struct AxisHints {
     pub levels: Vec<i16>,
     /// The track of each point, or [`UNTOUCHED`]. Empty if there are no tracks.
     pub track_of: Vec<u8>,
+    /// Whether each track moves its own points alone, so that those between the levels of others pass it by. Empty where points
+    /// follow those beside them on their contour.
+    pub is_local: Vec<bool>,
     /// The index of the first size that `moves` has.
     pub first_size: usize,
     /// For each size, for each track: how far it is from its scaled level, in 1/64 pixel.
@@ -58,6 +61,7 @@ impl AxisHints {
     fn memory(&self) -> usize {
         2 * (self.levels.capacity() + self.moves.len())
             + self.track_of.len()
+            + self.is_local.len()
             + size_of_val(&*self.corrections)
     }
 }

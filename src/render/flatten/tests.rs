@@ -16,14 +16,14 @@ fn flattened(contours: &[Vec<Stop>], offset: Point) -> Polygons {
     let mut places = [Vec::new(), Vec::new()];
     for contour in contours {
         for ([x, y], on_curve) in contour {
-            places[0].push(*x);
-            places[1].push(*y);
+            places[0].push(4 * x);
+            places[1].push(4 * y);
             outline.on_curve.push(*on_curve);
         }
         outline.ends.push(outline.on_curve.len() as u16);
     }
-    let mut polygons = Polygons { flat: FLAT, ..Polygons::default() };
-    polygons.add(&outline, &places, offset, [1; 2], FLAT);
+    let mut polygons = Polygons { precision: Precision::TRUE_TYPE, ..Polygons::default() };
+    polygons.add(&outline, &places, offset, [1; 2], Precision::TRUE_TYPE);
     polygons
 }
 
@@ -75,7 +75,7 @@ fn curve_at([a, b, c]: [i32; 3], t: f64) -> f64 {
 
 /// The vertices of one curve, which is given in units, without its first point.
 fn curve(points: [Point; 3]) -> Vec<Point> {
-    let mut polygons = Polygons { flat: FLAT, ..Polygons::default() };
+    let mut polygons = Polygons { precision: Precision::TRUE_TYPE, ..Polygons::default() };
     polygons.curve(points[0], points[1], points[2]);
     let [x, y] = polygons.vertices;
     x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
@@ -177,7 +177,7 @@ proptest! {
             for (k, (a, b)) in ends.enumerate() {
                 let middle = f64::from(a[axis] + b[axis]) / 2.0;
                 let away = (exact(k as f64 + 0.5) - middle).abs();
-                prop_assert!(away <= f64::from(FLAT + 1) / 4.0 + allowed, "after vertex {}: {}", k, away);
+                prop_assert!(away <= f64::from(Precision::TRUE_TYPE.flat + 1) / 4.0 + allowed, "after vertex {}: {}", k, away);
             }
         }
         prop_assert_eq!(vertices.last(), Some(&points[2]));
@@ -232,9 +232,9 @@ fn contours_of_one_or_two_points_draw_nothing() {
             ends: vec![count],
             is_unfit: false,
         };
-        let places = points.coordinates.each_ref().map(|v| v.iter().map(|v| i32::from(*v)).collect());
-        let mut polygons = Polygons { flat: FLAT, ..Polygons::default() };
-        polygons.add(&points, &places, [0, 0], [1; 2], FLAT);
+        let places = points.coordinates.each_ref().map(|v| v.iter().map(|v| 4 * i32::from(*v)).collect());
+        let mut polygons = Polygons { precision: Precision::TRUE_TYPE, ..Polygons::default() };
+        polygons.add(&points, &places, [0, 0], [1; 2], Precision::TRUE_TYPE);
         assert_eq!(polygons.ends.is_empty(), count < 3, "{count} points");
     }
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::Glyph;
 use crate::error::Error;
-use crate::model::outline::{OutlineModel, hint};
+use crate::model::outline::{OutlineModel, hint, in_64ths};
 use crate::model::sizes::HintedSize;
 use crate::options::DrawOptions;
 use crate::render::outline::check_reach;
@@ -44,7 +44,7 @@ impl HintedOutline {
         check_reach(points, offset)?;
         let start = self.on_curve.len();
         for ((all, part), offset) in self.points.iter_mut().zip(points).zip(offset) {
-            all.extend(part.iter().map(|v| v + offset));
+            all.extend(part.iter().map(|v| in_64ths(*v) + offset));
         }
         self.on_curve.extend(&model.points.on_curve);
         self.ends.extend(model.points.ends.iter().map(|end| start + usize::from(*end)));

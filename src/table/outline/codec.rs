@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::positions::{self, Axis, Choose, Referred};
+use super::rules::Scaling;
 use super::sections::{self, Owner};
 use super::shared::{Shared, Source};
 use super::structure;
@@ -123,7 +124,7 @@ pub fn code<C: Coder>(
     for axis in [1, 0] {
         let (hints, sources) = (&mut axes[axis], &mut sources[axis]);
         if model.flag(UNUSUAL, [axis, 0, 0], !hints.levels.is_empty()) {
-            structure::code(model, points, scale.units_per_em(), axis, hints, sources, &known.shared)?;
+            structure::code(model, points, scale, axis, hints, sources, &known.shared)?;
             check_moves(hints.levels.len(), scale)?;
             hints.first_size = sizes.start;
             hints.moves.resize(hints.levels.len() * sizes.len(), 0);
@@ -158,12 +159,13 @@ pub fn code<C: Coder>(
         let mut before = [0; 2];
         for size in section {
             model.check()?;
-            let scale = scale_at(scale, size);
+            let scaling = scaling_at(scale, size);
+            let scale = scaling.factor;
             for axis in [1, 0] {
                 let AxisHints { levels, moves, .. } = &mut axes[axis];
                 let at = (size - sizes.start) * levels.len();
                 let Some(moves) = moves.get_mut(at..at + levels.len()) else { continue };
-                tracks[axis].code(model, size, scale, levels, moves, choose);
+                tracks[axis].code(model, size, scaling, levels, moves, choose);
             }
             if let Some(advance) = advances.get_mut(size) {
                 let context = advance_context(known.advance, scale, &axes[0], size, before);
@@ -316,7 +318,7 @@ pub fn code_shared<C: Coder>(
     sizes: Range<usize>,
 ) -> Result<(), Damage> {
     sections::code(model, (Owner::SharedTrack, true), scale.sizes(), sizes, |model, section| {
-        let scales = section.map(|size| (size, scale_at(scale, size)));
+        let scales = section.map(|size| (size, scaling_at(scale, size)));
         positions::code_shared(model, level, scales, moves);
         model.check()
     })
@@ -375,6 +377,10 @@ pub fn code_list<C: Coder>(model: &mut ContextModel<'_, C>, list: &mut [i8]) {
 /// The scale of a font's trained size in pixels per em, as hints count on.
 pub fn scale_at(scale: Scale, size: usize) -> i32 {
     scale_of(scale.ppem_of(size) as f32, scale.units_per_em())
+}
+
+fn scaling_at(scale: Scale, size: usize) -> Scaling {
+    Scaling { factor: scale_at(scale, size), rounds_down: scale.is_postscript() }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::rules::{Candidate, Neighbours, Ranked, Scores, View, coding_order, to_grid};
+use super::rules::{Candidate, Neighbours, Ranked, Scaling, Scores, View, coding_order, to_grid};
 use super::shared::Source;
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
@@ -102,7 +102,7 @@ impl<'r> Axis<'r> {
         &mut self,
         model: &mut ContextModel<'_, C>,
         size: usize,
-        scale: i32,
+        scaling: Scaling,
         levels: &[i16],
         moves: &mut [i16],
         choose: Choose<'_>,
@@ -112,7 +112,7 @@ impl<'r> Axis<'r> {
         let (even, odd) = rest.split_at_mut(count);
         let (hinted, before) = if self.coded.is_multiple_of(2) { (even, odd) } else { (odd, even) };
         for (plain, level) in plain.iter_mut().zip(levels) {
-            *plain = mul_fixed((*level).into(), scale);
+            *plain = mul_fixed((*level).into(), scaling.factor);
         }
         let plain = &*plain;
         let before = (self.coded > 0).then_some(&*before);
@@ -123,7 +123,7 @@ impl<'r> Axis<'r> {
             if let Source::Same(_) | Source::Still = self.referred.sources[number] {
                 moves[number] = shared.unwrap_or(0);
             } else {
-                let view = View { levels, plain, hinted, before };
+                let view = View { levels, plain, hinted, before, scaling };
                 let at = At { axis: self.axis, size, missed, shared };
                 let (moved, is_first) = track.code(model, &view, at, &mut self.ranked, moves[number], choose);
                 moves[number] = moved;
@@ -326,18 +326,19 @@ fn price<C: Coder>(
 pub(super) fn code_shared<C: Coder>(
     model: &mut ContextModel<'_, C>,
     level: i16,
-    sizes: impl Iterator<Item = (usize, i32)>,
+    sizes: impl Iterator<Item = (usize, Scaling)>,
     moves: &mut Vec<i16>,
 ) {
     let mut track = Track { number: 0, neighbours: Neighbours::default(), scores: Scores::new(0), misses: 0 };
     let (mut before, mut ranked) = (None, Ranked::default());
-    for (size, scale) in sizes {
-        let plain = [mul_fixed(level.into(), scale)];
+    for (size, scaling) in sizes {
+        let plain = [mul_fixed(level.into(), scaling.factor)];
         let view = View {
             levels: &[level],
             plain: &plain,
             hinted: &[0],
             before: before.as_ref().map(<[i32; 1]>::as_slice),
+            scaling,
         };
         let at = At { axis: 0, size, missed: 0, shared: None };
         let wanted = moves.get(size).copied().unwrap_or(0);

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use wide::i32x4;
 
-use crate::model::outline::interpolated;
+use crate::model::outline::{interpolated, rounded_down};
 
 /// The number of rules.
 pub(super) const RULES: usize = 11;
@@ -64,6 +64,15 @@ pub(super) fn coding_order(count: u8) -> Vec<(u8, Neighbours)> {
     order
 }
 
+/// From font units to 1/64 pixel at a size.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scaling {
+    /// The factor, in 1/65536.
+    pub(super) factor: i32,
+    /// Whether hinted positions and the distances between them are rounded down, as those of PostScript outlines.
+    pub(super) rounds_down: bool,
+}
+
 /// What the rules look at: levels of the tracks in font units, and their positions in 1/64 pixel at this size and at the one
 /// before.
 #[derive(Debug, Clone, Copy)]
@@ -73,6 +82,7 @@ pub(super) struct View<'a> {
     pub(super) hinted: &'a [i32],
     /// None at the first size.
     pub(super) before: Option<&'a [i32]>,
+    pub(super) scaling: Scaling,
 }
 
 /// A position, rounded to whole pixels.
@@ -169,10 +179,51 @@ impl View<'_> {
             at[10] = hinted.wrapping_sub(before(b).wrapping_sub(own));
         }
         if let (3.., Some(a), Some(b)) = (N, lower, upper) {
-            let ends = [a, b].map(|k| (i32::from(self.levels[k]), self.plain[k], self.hinted[k]));
-            at[7] = interpolated(ends, self.levels[track].into(), plain);
+            at[7] = self.between([a, b], track);
+        }
+        if self.scaling.rounds_down {
+            self.of_stems(track, [lower, upper], &mut at);
         }
         Rules { positions: at, valid }
+    }
+
+    /// The position of a track, interpolated between two others.
+    fn between(&self, ends: [usize; 2], track: usize) -> i32 {
+        let ends = ends.map(|k| (i32::from(self.levels[k]), self.plain[k], self.hinted[k]));
+        interpolated(ends, self.levels[track].into(), self.plain[track])
+    }
+
+    /// The rules that differ for PostScript's hints: they put one edge of a stem on whole pixels, where the tracks around it lead it,
+    /// and the other edge as far away as the stem is wide. Positions are rounded down.
+    #[inline(never)]
+    fn of_stems(&self, track: usize, [lower, upper]: [Option<usize>; 2], at: &mut [i32; ROOM]) {
+        let led = |track: usize| match (lower, upper) {
+            (Some(a), Some(b)) => self.between([a, b], track),
+            _ => self.plain[track],
+        };
+        at[0] = to_grid(led(track));
+        at[1] = rounded_down(self.levels[track].into(), self.scaling.factor);
+        // The other edge may be the track above or the one below.
+        let [above, below] = [track.checked_add(1), track.checked_sub(1)]
+            .map(|other| other.filter(|other| *other < self.levels.len()));
+        let under = above.map(|other| to_grid(led(other)).wrapping_sub(self.width(track, other)[1]));
+        let over = below.map(|other| to_grid(led(other)).wrapping_add(self.width(other, track)[0]));
+        (at[4], at[8]) = (under.or(over).unwrap_or(at[0]), over.or(under).unwrap_or(at[0]));
+        let is_whole = |position: i32| position & 63 == 0;
+        if let Some(a) = lower {
+            let [down, up] = self.width(a, track);
+            at[5] = self.hinted[a].wrapping_add(if is_whole(self.hinted[a]) { down } else { up });
+        }
+        if let Some(b) = upper {
+            let [down, up] = self.width(track, b);
+            at[9] = self.hinted[b].wrapping_sub(if is_whole(self.hinted[b]) { up } else { down });
+        }
+    }
+
+    /// How far a track is above another, rounded down and up.
+    fn width(&self, lower: usize, upper: usize) -> [i32; 2] {
+        let units = i32::from(self.levels[upper]) - i32::from(self.levels[lower]);
+        [rounded_down(units, self.scaling.factor), rounded_down(-units, self.scaling.factor).wrapping_neg()]
     }
 }
 

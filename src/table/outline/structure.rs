@@ -6,10 +6,11 @@ use core::ops::Range;
 
 use super::shared::{Shared, Source};
 use crate::error::Damage;
-use crate::model::outline::{AxisHints, MAX_TRACKS, OutlinePoints, UNTOUCHED};
+use crate::model::outline::{AxisHints, Interpolation, MAX_TRACKS, OutlinePoints, UNTOUCHED};
+use crate::model::sizes::Scale;
 use crate::table::context_model::{ContextModel, class};
 use crate::table::damage::{malformed, too_large};
-use crate::table::elements::{SHARED, SOURCE, SUBTRACK, TRACK, UNUSUAL};
+use crate::table::elements::{LOCAL, SHARED, SOURCE, SUBTRACK, TRACK, UNUSUAL};
 use crate::table::range::Coder;
 
 /// The context of [`UNUSUAL`] for a level with several tracks.
@@ -90,7 +91,7 @@ fn levels(points: &OutlinePoints, axis: usize) -> (Vec<u16>, Vec<Level>) {
 pub(super) fn code<C: Coder>(
     model: &mut ContextModel<'_, C>,
     points: &OutlinePoints,
-    units_per_em: u16,
+    scale: Scale,
     axis: usize,
     hints: &mut AxisHints,
     sources: &mut Vec<Source>,
@@ -104,12 +105,18 @@ pub(super) fn code<C: Coder>(
     for (at, level) in levels.iter().enumerate() {
         let points = usize::from(level.points.start)..level.points.end.into();
         let points = order.get(points).unwrap_or_default();
-        tracks.code(model, (at, level), points, units_per_em, hints)?;
+        tracks.code(model, (at, level), points, scale.units_per_em(), hints)?;
         model.check()?;
     }
     if !C::WRITES {
         hints.levels = tracks.levels;
         hints.levels.shrink_to_fit();
+    }
+    if Interpolation::of(axis, &scale) == Interpolation::Level {
+        hints.is_local.resize(hints.levels.len(), false);
+        for is_local in &mut hints.is_local {
+            *is_local = model.flag(LOCAL, [0, 0, 0], *is_local);
+        }
     }
     sources.resize(hints.levels.len(), Source::Own);
     for (level, source) in hints.levels.iter().zip(sources) {

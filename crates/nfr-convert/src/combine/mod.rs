@@ -97,7 +97,7 @@ fn check_same_conversion(base: &ConvertedFont<'_>, addition: &ConvertedFont<'_>)
     let [a, b] = [base, addition].map(|font| nfr::internals::header(&font.font));
     let are_same = a.outline_hash == b.outline_hash
         && (a.target, a.first_ppem, a.last_ppem) == (b.target, b.first_ppem, b.last_ppem)
-        && (a.outlines_dropped, a.is_postscript) == (b.outlines_dropped, b.is_postscript)
+        && (a.outlines_dropped, a.origin) == (b.outlines_dropped, b.origin)
         && hinter_of(&base.font)? == hinter_of(&addition.font)?
         && base.font.glyph_count() == addition.font.glyph_count();
     if are_same {

@@ -1,8 +1,9 @@
 //! Corrections: of what the tracks leave, that which is worth its bits.
 
+use super::distortion::noise;
 use super::samples::OutlineSamples;
 use crate::options::Fidelity;
-use nfr::internals::model::outline::{AxisHints, Correction, move_contour};
+use nfr::internals::model::outline::{AxisHints, Correction, Tracks, in_64ths};
 
 /// The bits that a correction takes, roughly.
 const CORRECTION_BITS: f64 = 9.0;
@@ -18,17 +19,19 @@ pub(super) fn correct(
 ) -> Vec<Correction> {
     let price = CORRECTION_BITS * fidelity.error_per_bit();
     let mut corrections = Vec::new();
+    let noise = noise(samples, axis, fidelity);
     for size in 0..samples.sizes() {
-        let mut places: Vec<i32> = samples.plain(axis, size).collect();
-        if !hints.levels.is_empty() {
-            for contour in samples.points.contours() {
-                let units = &samples.points.coordinates[axis];
-                move_contour(units, contour, &hints.track_of, hints.moves_at(size), &mut places);
-            }
+        let mut places = vec![0; samples.points.len()];
+        let tracks =
+            Tracks::new(hints, hints.moves_at(size), &samples.points.on_curve, samples.interpolation(axis));
+        for contour in samples.points.contours() {
+            let units = &samples.points.coordinates[axis];
+            tracks.place(units, contour, samples.scales[size], &mut places);
         }
         for (point, (place, hinted)) in places.iter().zip(samples.hinted_at(axis, size)).enumerate() {
-            let saved = f64::from(place.abs_diff(*hinted)) * error(point, size);
-            if place != hinted && saved >= price {
+            let place = in_64ths(*place);
+            let saved = (f64::from(place.abs_diff(*hinted)) - noise).max(0.0) * error(point, size);
+            if place != *hinted && saved >= price {
                 corrections.push(Correction {
                     size: size as u16,
                     point: point as u16,

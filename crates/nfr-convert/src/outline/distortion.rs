@@ -1,7 +1,8 @@
 //! The error of the pixels that misplaced points make: the area between the outline and the true one, in pixels.
 
 use super::samples::OutlineSamples;
-use nfr::internals::model::outline::{AxisHints, move_contour};
+use crate::options::Fidelity;
+use nfr::internals::model::outline::{AxisHints, Interpolation, Tracks, in_64ths, in_units};
 
 /// What a misplaced point costs along one axis, with the hinted positions and what the tracks make of them.
 pub(super) struct Distortion<'s> {
@@ -11,13 +12,21 @@ pub(super) struct Distortion<'s> {
     extents: Vec<f64>,
     /// The points of each contour.
     contours: Vec<std::ops::Range<usize>>,
+    /// What does not count of a point's distance from its hinted position, in 1/64 pixel.
+    noise: f64,
 }
 
 /// What each point costs at least, in font units for an em of 1000, so that points within straight lines count.
 const LEAST_EXTENT: f64 = 4.0;
 
 impl<'s> Distortion<'s> {
-    pub(super) fn new(samples: &'s OutlineSamples, axis: usize, units_per_em: u16) -> Self {
+    pub(super) fn new(
+        samples: &'s OutlineSamples,
+        axis: usize,
+        units_per_em: u16,
+        fidelity: Fidelity,
+    ) -> Self {
+        let noise = noise(samples, axis, fidelity);
         let other = &samples.points.coordinates[1 - axis];
         let least = LEAST_EXTENT * f64::from(units_per_em) / 1000.0;
         let mut extents = vec![0.0; samples.points.len()];
@@ -31,11 +40,14 @@ impl<'s> Distortion<'s> {
             }
         }
         extents.iter_mut().for_each(|extent| *extent += least);
-        Self { samples, axis, extents, contours: samples.points.contours().collect() }
+        Self { samples, axis, extents, contours: samples.points.contours().collect(), noise }
     }
 
-    /// The contours that some points belong to.
-    pub(super) fn contours_of(&self, points: &[u16]) -> Vec<usize> {
+    /// The contours that a track of some points moves; whether it moves these points alone.
+    pub(super) fn contours_of(&self, points: &[u16], is_local: bool) -> Vec<usize> {
+        if self.samples.interpolation(self.axis) == Interpolation::Level && !is_local {
+            return (0..self.contours.len()).collect();
+        }
         let holds = |contour: usize| points.iter().any(|p| self.contours[contour].contains(&usize::from(*p)));
         (0..self.contours.len()).filter(|contour| holds(*contour)).collect()
     }
@@ -58,21 +70,26 @@ impl<'s> Distortion<'s> {
     /// The error of a contour at a size; `moved` is a track, and how much farther it is moved.
     fn at(&self, contour: usize, size: usize, hints: &AxisHints, moved: Option<(usize, i16)>) -> f64 {
         let range = self.contours[contour].clone();
-        let mut places: Vec<i32> = self.samples.plain(self.axis, size).collect();
+        let mut places = vec![0; self.samples.points.len()];
         let units = &self.samples.points.coordinates[self.axis];
         let mut moves = hints.moves_at(size).to_vec();
         if let Some((track, by)) = moved {
             moves[track] += by;
         }
-        if !moves.is_empty() {
-            move_contour(units, range.clone(), &hints.track_of, &moves, &mut places);
-        }
+        let tracks =
+            Tracks::new(hints, &moves, &self.samples.points.on_curve, self.samples.interpolation(self.axis));
+        tracks.place(units, range.clone(), self.samples.scales[size], &mut places);
         for correction in hints.corrections_at(size) {
-            places[usize::from(correction.point)] += i32::from(correction.by);
+            let place = &mut places[usize::from(correction.point)];
+            *place = in_units(in_64ths(*place) + i32::from(correction.by));
         }
         let pixels = f64::from(self.samples.scales[size]) / (65536.0 * 64.0);
         let hinted = self.samples.hinted_at(self.axis, size);
-        let errors = range.map(|p| f64::from(places[p].abs_diff(hinted[p])) / 64.0 * self.extents[p]);
+        let apart = |p: usize| {
+            let units = places[p].abs_diff(in_units(hinted[p]));
+            (f64::from(units) / f64::from(in_units(1)) - self.noise).max(0.0)
+        };
+        let errors = range.map(|p| apart(p) / 64.0 * self.extents[p]);
         errors.sum::<f64>() * pixels
     }
 
@@ -86,7 +103,8 @@ impl<'s> Distortion<'s> {
         const BY: i16 = 16;
         let own = |p: &usize| usize::from(hints.track_of[*p]) == track;
         let points: Vec<u16> = (0..hints.track_of.len()).filter(own).map(|p| p as u16).collect();
-        let contours = self.contours_of(&points);
+        let is_local = hints.is_local.get(track).is_some_and(|is_local| *is_local);
+        let contours = self.contours_of(&points, is_local);
         let weight = |size: usize| {
             let change = |contour: &usize| {
                 let there = self.at(*contour, size, hints, Some((track, BY)));
@@ -96,4 +114,14 @@ impl<'s> Distortion<'s> {
         };
         (0..self.samples.sizes()).map(weight).collect()
     }
+}
+
+/// Hinted points of PostScript outlines are rounded down, and those of curves by themselves, so that this much of their distance from what the
+/// stems make of them, in 1/64 pixel, is noise that no reader sees: along a curve it evens out.
+const ROUNDING: f64 = 0.5;
+
+/// What does not count of a point's distance from its hinted position along an axis, in 1/64 pixel.
+pub(super) fn noise(samples: &OutlineSamples, axis: usize, fidelity: Fidelity) -> f64 {
+    let follows_stems = samples.interpolation(axis) == Interpolation::Level && !fidelity.is_exact();
+    if follows_stems { ROUNDING } else { 0.0 }
 }

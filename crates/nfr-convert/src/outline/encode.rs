@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use nfr::internals::model::gridfit::Scale;
+use nfr::internals::model::outline::Interpolation;
 use nfr::internals::table::BigEndian;
 use nfr::internals::table::outline::{self, Known, Question, Shared, Sources};
 
@@ -71,15 +72,31 @@ pub(crate) fn encode(
             encode_glyph(&known, samples, outline, &sources, fidelity)
         };
         let own = encoded(outline)?;
-        if fidelity.is_exact() {
+        if fidelity.is_exact() || samples.interpolation(1) == Interpolation::Level {
             store.keep(*number, &own)?;
             return Ok(own);
         }
         // More tracks can take fewer bits than the corrections that they make needless.
-        let exact = encoded(&fit(samples, units_per_em, Fidelity::EXACT))?;
+        let exact = encoded(&fit(samples, units_per_em, Fidelity::EXACT, fidelity))?;
         let total = |(bytes, weights): &Encoded| {
-            error(weights, samples, units_per_em) + fidelity.error_per_bit() * 8.0 * bytes.len() as f64
+            error(weights, samples, units_per_em, fidelity)
+                + fidelity.error_per_bit() * 8.0 * bytes.len() as f64
         };
+        if std::env::var("PSDBG").is_ok() {
+            eprintln!(
+                "own {} bytes, {:?} corrections {:?}, total {:.3}; exact {} bytes total {:.3}",
+                own.0.len(),
+                (
+                    own.1.axes[1].corrections.len(),
+                    own.1.axes[0].corrections.len(),
+                    own.1.axes[0].levels.len()
+                ),
+                sources_of(&own),
+                total(&own),
+                exact.0.len(),
+                total(&exact)
+            );
+        }
         let best = if total(&exact) < total(&own) { exact } else { own };
         store.keep(*number, &best)?;
         Ok(best)
@@ -134,4 +151,8 @@ fn choose(question: &Question<'_>, cost: f64, fidelity: Fidelity) -> i32 {
     let near = question.candidates.iter().copied().filter(|moved| (moved - wanted).abs() <= REACH);
     let tried = near.chain([wanted]).map(|moved| (moved, total(moved)));
     tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(wanted, |(moved, _)| moved)
+}
+
+fn sources_of(e: &Encoded) -> usize {
+    e.1.axes[1].levels.len()
 }

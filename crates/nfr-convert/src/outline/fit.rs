@@ -3,7 +3,7 @@
 use super::correction::correct;
 use super::distortion::Distortion;
 use super::samples::OutlineSamples;
-use nfr::internals::model::outline::{AxisHints, MAX_TRACKS, OutlineWeights, UNTOUCHED};
+use nfr::internals::model::outline::{AxisHints, Interpolation, MAX_TRACKS, OutlineWeights, UNTOUCHED};
 use nfr::internals::mul_fixed;
 
 use crate::options::Fidelity;
@@ -32,32 +32,51 @@ pub(super) fn add_corrections(
         return;
     }
     for (axis, hints) in weights.axes.iter_mut().enumerate() {
-        let distortion = Distortion::new(samples, axis, units_per_em);
+        if samples.is_still(axis, fidelity) {
+            continue;
+        }
+        let distortion = Distortion::new(samples, axis, units_per_em, fidelity);
         hints.corrections =
             correct(samples, axis, hints, fidelity, |point, size| distortion.of_point(point, size));
     }
 }
 
 /// The error of hints over all sizes, in pixels of full coverage.
-pub(super) fn error(weights: &OutlineWeights, samples: &OutlineSamples, units_per_em: u16) -> f64 {
-    let axes = weights.axes.iter().enumerate();
-    axes.map(|(axis, hints)| Distortion::new(samples, axis, units_per_em).of_all(hints)).sum()
+pub(super) fn error(
+    weights: &OutlineWeights,
+    samples: &OutlineSamples,
+    units_per_em: u16,
+    fidelity: Fidelity,
+) -> f64 {
+    let axes = weights.axes.iter().enumerate().filter(|(axis, _)| !samples.is_still(*axis, fidelity));
+    axes.map(|(axis, hints)| Distortion::new(samples, axis, units_per_em, fidelity).of_all(hints)).sum()
 }
 
 /// Points that one track could move.
+#[derive(Clone)]
 struct Cluster {
     level: i16,
     points: Vec<u16>,
     /// How far hinting moves them at each size.
     moves: Vec<i16>,
     contours: Vec<usize>,
+    /// Whether the track moves these points alone.
+    is_local: bool,
 }
 
 /// Finds the hints of a glyph.
-pub(crate) fn fit(samples: &OutlineSamples, units_per_em: u16, fidelity: Fidelity) -> FittedOutline {
+pub(crate) fn fit(
+    samples: &OutlineSamples,
+    units_per_em: u16,
+    fidelity: Fidelity,
+    still: Fidelity,
+) -> FittedOutline {
     let mut costs = [Vec::new(), Vec::new()];
     let axes = [0, 1].map(|axis| {
-        let distortion = Distortion::new(samples, axis, units_per_em);
+        if samples.is_still(axis, still) {
+            return AxisHints::default();
+        }
+        let distortion = Distortion::new(samples, axis, units_per_em, fidelity);
         let hints = fit_axis(samples, axis, &distortion, fidelity);
         costs[axis] = (0..hints.levels.len()).map(|track| distortion.weights(&hints, track)).collect();
         hints
@@ -71,10 +90,9 @@ fn fit_axis(
     distortion: &Distortion<'_>,
     fidelity: Fidelity,
 ) -> AxisHints {
-    if samples.is_still(axis, fidelity) {
-        return AxisHints::default();
-    }
     let clusters = clusters(samples, axis, distortion, fidelity.tolerance());
+    // Each cluster is followed by its local twin.
+    let has_twins = samples.interpolation(axis) == Interpolation::Level;
     let price = fidelity.error_per_bit() * (TRACK_BITS + MOVE_BITS * samples.sizes() as f64);
     let mut chosen = vec![false; clusters.len()];
     let mut errors: Vec<f64> =
@@ -90,7 +108,7 @@ fn fit_axis(
         (saved, after)
     };
     // The lowest and the highest level begin.
-    for k in [0, clusters.len() - 1] {
+    for k in [0, clusters.len() - 1 - usize::from(has_twins)] {
         if !chosen[k] {
             let (_, after) = gain(&mut chosen, &errors, k);
             chosen[k] = true;
@@ -101,7 +119,8 @@ fn fit_axis(
     let mut last: Vec<f64> = vec![f64::INFINITY; clusters.len()];
     while chosen.iter().filter(|c| **c).count() < MAX_TRACKS {
         let mut best: Option<(usize, f64, Vec<f64>)> = None;
-        let mut order: Vec<usize> = (0..clusters.len()).filter(|k| !chosen[*k]).collect();
+        let is_free = |k: &usize| !chosen[*k] && !(has_twins && chosen[k ^ 1]);
+        let mut order: Vec<usize> = (0..clusters.len()).filter(is_free).collect();
         order.sort_by(|a, b| last[*b].total_cmp(&last[*a]));
         for k in order {
             if best.as_ref().is_some_and(|(_, gain, _)| last[k] * PATIENCE < *gain) {
@@ -159,14 +178,27 @@ fn clusters(
         match clusters.iter_mut().rev().take_while(|c| c.level == units[p]).find(like) {
             Some(cluster) => cluster.points.push(point),
             None => {
-                clusters.push(Cluster { level: units[p], points: vec![point], moves, contours: Vec::new() });
+                clusters.push(Cluster {
+                    level: units[p],
+                    points: vec![point],
+                    moves,
+                    contours: Vec::new(),
+                    is_local: false,
+                });
             }
         }
     }
     for cluster in &mut clusters {
-        cluster.contours = distortion.contours_of(&cluster.points);
+        cluster.contours = distortion.contours_of(&cluster.points, false);
     }
-    clusters
+    if samples.interpolation(axis) == Interpolation::Contour {
+        return clusters;
+    }
+    let both = |cluster: Cluster| {
+        let contours = distortion.contours_of(&cluster.points, true);
+        [cluster.clone(), Cluster { contours, is_local: true, ..cluster }]
+    };
+    clusters.into_iter().flat_map(both).collect()
 }
 
 /// The hints that the chosen clusters make.
@@ -185,6 +217,11 @@ fn hints(samples: &OutlineSamples, clusters: &[Cluster], chosen: &[bool]) -> Axi
         first_size: 0,
         levels: chosen.iter().map(|cluster| cluster.level).collect(),
         track_of,
+        is_local: if chosen.iter().any(|cluster| cluster.is_local) {
+            chosen.iter().map(|cluster| cluster.is_local).collect()
+        } else {
+            Vec::new()
+        },
         moves: (0..samples.sizes()).flat_map(|size| chosen.iter().map(move |c| c.moves[size])).collect(),
         corrections: Vec::new(),
     }

@@ -55,6 +55,7 @@ fn put_weights(out: &mut Vec<u8>, weights: &OutlineWeights) {
         out.extend((hints.first_size as u32).to_be_bytes());
         put_list(out, &hints.levels, |level| level.to_be_bytes());
         put_list(out, &hints.track_of, |track| [*track]);
+        put_list(out, &hints.is_local, |is_local| [u8::from(*is_local)]);
         put_list(out, &hints.moves, |by| by.to_be_bytes());
         put_list(out, &hints.corrections, |c| {
             let [size, point, by] = [c.size.to_be_bytes(), c.point.to_be_bytes(), c.by.to_be_bytes()];
@@ -73,6 +74,7 @@ fn weights(bytes: &mut &[u8]) -> Option<OutlineWeights> {
             first_size: u32::from_be_bytes(take(bytes)?) as usize,
             levels: list(bytes, i16::from_be_bytes)?,
             track_of: list(bytes, |[track]| track)?,
+            is_local: list(bytes, |[is_local]| is_local != 0)?,
             moves: list(bytes, i16::from_be_bytes)?,
             corrections: list(bytes, |c: [u8; 6]| Correction {
                 size: u16::from_be_bytes([c[0], c[1]]),
@@ -115,6 +117,7 @@ mod tests {
             first_size: 1,
             levels: vec![-3, 700],
             track_of: vec![0, 1, 255],
+            is_local: vec![true, false],
             moves: vec![-64, 12, 0, 300],
             corrections: vec![Correction { size: 1, point: 2, by: -7 }],
         };

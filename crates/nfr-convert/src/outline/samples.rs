@@ -4,11 +4,13 @@ use crate::options::Fidelity;
 use crate::path_points::places;
 use crate::training_samples::GlyphSamples;
 use nfr::internals::model::gridfit::Scale;
-use nfr::internals::model::outline::{OutlinePoints, rounded_down, scale_of};
+use nfr::internals::model::outline::{Interpolation, OutlinePoints, rounded_down, scale_of};
+use nfr::internals::model::sizes::Origin;
 use nfr::internals::mul_fixed;
 
-/// How far in font units the control points of PostScript outlines are from where they would be without rounding, at most.
-const CONTROL_UNITS: i32 = 2;
+/// Points of what were cubic curves are combinations of rounded ones, and rounded themselves: they are this far from their scaled places, in
+/// 1/64 pixel, where nothing is hinted.
+const ROUNDINGS: u32 = 2;
 
 /// A glyph's points, and where hinting puts them at each size.
 #[derive(Debug, Clone)]
@@ -20,8 +22,8 @@ pub(crate) struct OutlineSamples {
     pub(crate) hinted: [Vec<i32>; 2],
     /// The hinted advance width at each size, in whole pixels less the scaled one, rounded.
     pub(crate) advances: Vec<i8>,
-    /// Whether the hints are those of PostScript outlines.
-    is_postscript: bool,
+    origin: Origin,
+    interpolation: [Interpolation; 2],
 }
 
 impl OutlineSamples {
@@ -52,19 +54,36 @@ impl OutlineSamples {
                 }));
             }
         }
-        let advances = samples.sizes.iter().zip(&scales).map(|(size, scale)| {
-            let rounded = (mul_fixed(advance.into(), *scale) + 32) >> 6;
-            size.advance.map_or(0, |hinted| (hinted - rounded).clamp(i8::MIN.into(), i8::MAX.into()) as i8)
-        });
-        let is_postscript = scale.is_postscript();
-        Some(Self { advances: advances.collect(), points, scales, hinted, is_postscript })
+        let advances: Vec<i8> = samples
+            .sizes
+            .iter()
+            .zip(&scales)
+            .map(|(size, scale)| {
+                let rounded = (mul_fixed(advance.into(), *scale) + 32) >> 6;
+                size.advance
+                    .map_or(0, |hinted| (hinted - rounded).clamp(i8::MIN.into(), i8::MAX.into()) as i8)
+            })
+            .collect();
+        Some(Self { scales, hinted, advances, ..Self::of_points(points, scale) })
     }
 
     /// A glyph's points without the hinted positions, which are not needed once it is encoded.
     pub(crate) fn of_points(points: OutlinePoints, scale: Scale) -> Self {
-        let is_postscript = scale.is_postscript();
+        let interpolation = [0, 1].map(|axis| Interpolation::of(axis, &scale));
         let hinted = [Vec::new(), Vec::new()];
-        Self { points, scales: Vec::new(), hinted, advances: Vec::new(), is_postscript }
+        Self {
+            points,
+            scales: Vec::new(),
+            hinted,
+            advances: Vec::new(),
+            origin: scale.origin(),
+            interpolation,
+        }
+    }
+
+    /// What moves the points along an axis that no track moves.
+    pub(crate) fn interpolation(&self, axis: usize) -> Interpolation {
+        self.interpolation[axis]
     }
 
     /// The number of sizes.
@@ -72,23 +91,22 @@ impl OutlineSamples {
         self.scales.len()
     }
 
-    /// The plain positions along an axis at a size.
-    pub(crate) fn plain(&self, axis: usize, size: usize) -> impl Iterator<Item = i32> + '_ {
-        let scale = self.scales[size];
-        self.points.coordinates[axis].iter().map(move |units| mul_fixed((*units).into(), scale))
+    /// The positions along an axis at a size if nothing is hinted there.
+    fn plain(&self, axis: usize, size: usize) -> impl Iterator<Item = i32> + '_ {
+        let (scale, rounds_down) = (self.scales[size], self.origin == Origin::PostScript);
+        let plain = move |v: i32| if rounds_down { rounded_down(v, scale) } else { mul_fixed(v, scale) };
+        self.points.coordinates[axis].iter().map(move |units| plain((*units).into()))
     }
 
     /// Whether hinting leaves an axis alone at all sizes.
     pub(crate) fn is_still(&self, axis: usize, fidelity: Fidelity) -> bool {
+        let tolerance = match self.origin {
+            Origin::TrueType => fidelity.tolerance() as u32 / 2,
+            _ if fidelity.is_exact() => 0,
+            _ => ROUNDINGS,
+        };
         (0..self.sizes()).all(|size| {
-            let (scale, hinted) = (self.scales[size], self.hinted_at(axis, size));
-            if !self.is_postscript {
-                let tolerance = fidelity.tolerance() as u32 / 2;
-                return self.plain(axis, size).zip(hinted).all(|(a, b)| a.abs_diff(*b) <= tolerance);
-            }
-            let tolerance = if fidelity.is_exact() { 0 } else { 1 + mul_fixed(CONTROL_UNITS, scale) as u32 };
-            let units = &self.points.coordinates[axis];
-            units.iter().zip(hinted).all(|(v, b)| rounded_down(*v, scale).abs_diff(*b) <= tolerance)
+            self.plain(axis, size).zip(self.hinted_at(axis, size)).all(|(a, b)| a.abs_diff(*b) <= tolerance)
         })
     }
 

@@ -219,7 +219,7 @@ fn header(font: &FontRef<'_>, teacher: &Teacher, options: &Options) -> Result<He
         last_ppem: last - (last - first) % options.ppem_step,
         outline_hash: outline_hash(font)?,
         outlines_dropped: options.drop_outlines,
-        is_postscript: teacher.is_postscript(),
+        origin: teacher.origin(),
         seed: options.seed,
         steps: options.schedule.steps as u16,
         knots: options.capacity.knots as u8,

@@ -108,7 +108,7 @@ fn fitted(stages: &Stages<'_>, font: &Font, gid: u16, kept: Kept<'_>) -> Result<
     }
     let units_per_em = stages.scale.units_per_em();
     let fit = samples.map(|samples| {
-        let outline = fit(&samples.0, units_per_em, stages.options.fidelity);
+        let outline = fit(&samples.0, units_per_em, stages.options.fidelity, stages.options.fidelity);
         (samples, outline)
     });
     kept.keep_fitted(gid, fit.as_ref().map(|(_, outline)| outline))?;

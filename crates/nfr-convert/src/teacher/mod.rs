@@ -25,6 +25,7 @@ use crate::input::ppem::MAX_TEACHER_PPEM;
 use crate::options::Hinter;
 use equivalent::Equivalent;
 use nfr::Target;
+use nfr::internals::model::sizes::Origin;
 use postscript::PostScript;
 use unhinted::{draw, glyf_of, undrawable};
 
@@ -130,6 +131,15 @@ impl Teacher {
     /// Whether the font has PostScript outlines.
     pub fn is_postscript(&self) -> bool {
         self.postscript.is_some()
+    }
+
+    /// Where the models' outlines and hints come from.
+    pub(crate) fn origin(&self) -> Origin {
+        match (self.is_postscript(), self.hinter) {
+            (false, _) => Origin::TrueType,
+            (true, Hinter::Auto) => Origin::Cubic,
+            (true, Hinter::Font) => Origin::PostScript,
+        }
     }
 
     /// Font units in an em.

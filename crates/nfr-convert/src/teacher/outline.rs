@@ -38,19 +38,26 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// The same outline, filled as another one, whose cubic curves become lines.
+    /// The same outline, filled as another one, whose cubic curves become lines, and whose contours turn the other way.
     pub(super) fn filled_as(self, other: &Self) -> Self {
         let mut filled = Vec::new();
-        let mut at = Vector::ZERO;
+        let mut contour: Vec<Vector> = Vec::new();
         for command in &other.commands {
             match command {
-                Command::CurveTo(a, b, to) => filled.extend(chords([at, *a, *b, *to]).map(Command::LineTo)),
-                command => filled.push(*command),
-            }
-            if let Command::MoveTo(to) | Command::LineTo(to) | Command::CurveTo(_, _, to) = command {
-                at = *to;
+                Command::MoveTo(to) => {
+                    add_reversed(&mut contour, &mut filled);
+                    contour.push(*to);
+                }
+                Command::LineTo(to) => contour.push(*to),
+                Command::CurveTo(a, b, to) => {
+                    let at = contour.last().copied().unwrap_or(Vector::ZERO);
+                    contour.extend(chords([at, *a, *b, *to]));
+                }
+                // Charstrings have no quadratic curves, and contours are closed where the next one begins.
+                Command::QuadTo(..) | Command::Close => {}
             }
         }
+        add_reversed(&mut contour, &mut filled);
         Self { filled: Some(filled), ..self }
     }
 
@@ -206,6 +213,16 @@ impl Outline {
             )));
         }
         Ok(())
+    }
+}
+
+/// Moves a contour's points to a path, the last one first.
+fn add_reversed(contour: &mut Vec<Vector>, path: &mut Vec<Command>) {
+    let mut points = contour.drain(..).rev();
+    if let Some(start) = points.next() {
+        path.push(Command::MoveTo(start));
+        path.extend(points.map(Command::LineTo));
+        path.push(Command::Close);
     }
 }
 

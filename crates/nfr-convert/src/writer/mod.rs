@@ -10,7 +10,7 @@ use nfr::internals::table::composed::{COUNTS_AT, NO_GRID_OFFSETS};
 use nfr::internals::table::{
     BLOCK, CERTIFICATE, Certificate, CertifiedErrors, DROPOUT, Dropout, DropoutException, DropoutModes,
     HEADER_LEN, Header, MAJOR_VERSION, MAX_GRID_OFFSET_BYTES, MAX_PARTS, MINOR_VERSION,
-    NETWORK_MINOR_VERSION, NETWORKS, OUTLINES_DROPPED, POSTSCRIPT, codec, part_offsets,
+    NETWORK_MINOR_VERSION, NETWORKS, OUTLINES_DROPPED, codec, part_offsets,
 };
 
 use crate::error::Error;
@@ -132,7 +132,7 @@ fn put_header(out: &mut Vec<u8>, header: &Header, glyphs: usize, payload: usize)
     out.extend(MAJOR_VERSION.to_be_bytes());
     out.extend(MINOR_VERSION.to_be_bytes());
     let flag = |is_set: bool, flag: u8| if is_set { flag } else { 0 };
-    let flags = flag(header.outlines_dropped, OUTLINES_DROPPED) | flag(header.is_postscript, POSTSCRIPT);
+    let flags = flag(header.outlines_dropped, OUTLINES_DROPPED) | header.origin_flags();
     out.extend([header.target_number(), flags]);
     out.extend(header.first_ppem.to_be_bytes());
     out.extend(header.last_ppem.to_be_bytes());

@@ -2,14 +2,15 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::model::outline::OutlinePoints;
 use crate::model::outline::weights::{Correction, OutlineWeights};
-use crate::model::sizes::Scale;
+use crate::model::sizes::{Origin, Scale};
 
 /// Moves one contour of points, given in font units, which are scaled by `scale` in 1/65536. `moves[k]` is the move of point k
 /// in 1/64 pixel if it is touched. Gives the positions.
 fn moved(units: &[i16], scale: i32, moves: &[Option<i16>]) -> Vec<i32> {
     let mut out = Vec::new();
-    scaled(units, &mut out, |v| mul_fixed(v.into(), scale));
+    out.extend(units.iter().map(|v| mul_fixed((*v).into(), scale)));
     // Each touched point has a track of its own.
     let track_of: Vec<u8> = moves.iter().enumerate().map(|(k, m)| m.map_or(UNTOUCHED, |_| k as u8)).collect();
     let moves: Vec<i16> = moves.iter().map(|moved| moved.unwrap_or_default()).collect();
@@ -112,6 +113,7 @@ fn stem() -> OutlineModel {
         track_of: vec![0, 1, 1, 0],
         moves: vec![0, 32, 0, 16],
         corrections: vec![Correction { size: 1, point: 3, by: -5 }],
+        ..AxisHints::default()
     };
     let weights = OutlineWeights { axes: [AxisHints::default(), y], ..OutlineWeights::default() };
     OutlineModel::new(points, weights, scale, 0..2).unwrap()
@@ -120,7 +122,7 @@ fn stem() -> OutlineModel {
 fn hinted(model: &OutlineModel, ppem: f32) -> [Vec<i32>; 2] {
     let mut points = [vec![9; 7], Vec::new()];
     hint(model, &model.scale.at(ppem), &mut points);
-    points
+    points.map(|axis| axis.into_iter().map(in_64ths).collect())
 }
 
 #[test]
@@ -237,14 +239,14 @@ fn coordinates_of_postscript_outlines_are_rounded_down_where_nothing_is_hinted()
         ends: vec![3],
         is_unfit: false,
     };
-    for (is_postscript, at) in [(false, 77), (true, 76)] {
-        let sizes = Scale::new(1000, 12, 12).unwrap().with_postscript(is_postscript);
+    for (origin, at) in [(Origin::TrueType, 77), (Origin::Cubic, 77), (Origin::PostScript, 76)] {
+        let sizes = Scale::new(1000, 12, 12).unwrap().with_origin(origin);
         let model = OutlineModel::new(points.clone(), OutlineWeights::default(), sizes, 0..1).unwrap();
         let mut places = [Vec::new(), Vec::new()];
         hint(&model, &sizes.at(12.0), &mut places);
-        assert_eq!(places, [vec![0, at, at], vec![0, 0, at]]);
+        assert_eq!(places, [vec![0, 4 * at, 4 * at], vec![0, 0, 4 * at]]);
         // Nothing is hinted at other sizes.
         hint(&model, &sizes.at(24.0), &mut places);
-        assert_eq!(places[0][1], 154);
+        assert_eq!(places[0][1], 4 * 154);
     }
 }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::model::outline::AxisHints;
+use crate::model::sizes::Origin;
 use crate::table::outline::sizes_for;
 
 /// The example of the specification: a glyph at three sizes, with three tracks along y.
@@ -17,6 +18,7 @@ fn example() -> (OutlinePoints, OutlineWeights, Sources) {
         first_size: 0,
         moves: vec![0, 13, 26, 0, -10, -19, 0, 32, 0],
         corrections: vec![Correction { size: 2, point: 3, by: -5 }],
+        ..AxisHints::default()
     };
     let weights = OutlineWeights { axes: [AxisHints::default(), y], advances: vec![0, 1, 0] };
     (points, weights, [Vec::new(), vec![Source::Own; 3]])
@@ -39,6 +41,27 @@ fn the_example_of_the_specification_is_coded_as_it_says() {
     let hex: String = message.iter().map(|byte| format!("{byte:02x}")).collect();
     assert!(page.contains(&format!("    {hex}\n")), "spec/nfrt.md does not have {hex}");
     assert_eq!(decode(&message, &known, 0..3, &mut Vec::new()), Ok((expected, sources)));
+}
+
+#[test]
+fn tracks_of_postscript_outlines_are_read_as_they_were_written_local_or_not() {
+    let (points, mut weights, sources) = example();
+    let y = &mut weights.axes[1];
+    y.is_local = vec![false, true, false];
+    let expected = weights.clone();
+    let mut known = known(&points);
+    known.scale = known.scale.with_origin(Origin::PostScript);
+    let message =
+        encode(&known, &mut weights, &sources, &mut |question| question.wanted.into()).expect("a message");
+    let read = decode(&message, &known, 0..3, &mut Vec::new());
+    assert_eq!(read, Ok((expected.clone(), sources.clone())));
+    // Each track says whether it is local, even if none is.
+    weights.axes[1].is_local.clear();
+    let message =
+        encode(&known, &mut weights, &sources, &mut |question| question.wanted.into()).expect("a message");
+    let (read, _) = decode(&message, &known, 0..3, &mut Vec::new()).expect("hints");
+    assert_eq!(read.axes[1].is_local, [false; 3]);
+    assert_eq!(read.axes[1].moves, expected.axes[1].moves);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::number::mul_fixed;
 
 #[test]
 fn tracks_are_coded_from_the_ends_to_the_middles_of_gaps() {
@@ -84,4 +85,38 @@ proptest! {
         check::<2>(positions, scores, valid & (LOWER | BEFORE | SHARED), hinted);
         check::<1>(positions, scores, valid & (BEFORE | SHARED), hinted);
     }
+}
+
+/// The rules of the third and of the fourth of four tracks at 13 pixels per em of 1000 units: a stem 82 units wide between two edges that are known.
+#[test]
+fn an_edge_of_a_stem_is_on_whole_pixels_or_as_far_from_them_as_the_stem_is_wide() {
+    let levels = [0, 332, 414, 729];
+    let factor = crate::model::outline::scale_of(13.0, 1000);
+    let plain = levels.map(|level| mul_fixed(level.into(), factor));
+    assert_eq!(plain, [0, 276, 344, 607]);
+    // The highest edge is hinted at 640, which leads the stem's edges to 291 and 363, and the upper one to 384.
+    let mut view = View {
+        levels: &levels,
+        plain: &plain,
+        hinted: &[0, 0, 0, 640],
+        before: None,
+        scaling: Scaling { factor, rounds_down: true },
+    };
+    let between = Neighbours { lower: Some(0), upper: Some(3) };
+    let lower = view.rules::<3>(1, between, None).positions;
+    // 82 units are 68.2 of 1/64 pixel, and 332 are 276.2.
+    assert_eq!([lower[0], lower[1], lower[4], lower[5]], [320, 276, 384 - 69, 276]);
+    let hinted = [0, 384 - 69, 0, 640];
+    view.hinted = &hinted;
+    let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
+    assert_eq!([upper[0], upper[5]], [384, 384]);
+    // With the lower edge on whole pixels, the upper one is rounded down.
+    let hinted = [0, 320, 0, 640];
+    view.hinted = &hinted;
+    let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
+    assert_eq!((upper[5], upper[9]), (320 + 68, 640 - 263));
+    // Hints of TrueType round distances to the nearest.
+    view.scaling.rounds_down = false;
+    let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
+    assert_eq!([upper[1], upper[4], upper[5], upper[9]], [344, 320 + 64, 320 + 68, 640 - 263]);
 }

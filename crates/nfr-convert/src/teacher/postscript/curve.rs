@@ -8,9 +8,7 @@
 /// The most quadratics of a cubic.
 const MAX_QUADRATICS: usize = 8;
 /// Points of a quadratic at which it is compared with the cubic.
-const SAMPLES: usize = 8;
-/// A control point that is so near to a whole number is one.
-const WHOLE: f64 = 1e-6;
+pub(super) const SAMPLES: usize = 8;
 
 /// One coordinate of a cubic's points.
 pub(super) type Cubic = [f64; 4];
@@ -37,33 +35,8 @@ pub(super) fn controls(cubic: &Cubic, count: usize) -> Vec<f64> {
     (0..count).map(part).collect()
 }
 
-/// The control points as whole numbers, whose spline is nearer to the cubic than with any one of them changed by one.
-pub(super) fn whole_controls(cubic: &Cubic, count: usize) -> Vec<f64> {
-    let exact = controls(cubic, count);
-    let mut whole: Vec<f64> = exact.iter().map(|v| v.round()).collect();
-    let error = |controls: &[f64]| differences(cubic, controls).iter().map(|d| d * d).sum::<f64>();
-    let mut least = error(&whole);
-    let mut is_better = true;
-    while is_better {
-        is_better = false;
-        // A control point on a whole number is level with a point on the curve, mostly, and stays so.
-        for k in (0..count).filter(|k| (exact[*k] - exact[*k].round()).abs() > WHOLE) {
-            for by in [-1.0, 1.0] {
-                whole[k] += by;
-                let after = error(&whole);
-                if after < least {
-                    (least, is_better) = (after, true);
-                } else {
-                    whole[k] -= by;
-                }
-            }
-        }
-    }
-    whole
-}
-
 /// How far a spline is from its cubic, at equal steps of the parameter.
-fn differences(cubic: &Cubic, controls: &[f64]) -> Vec<f64> {
+pub(super) fn differences(cubic: &Cubic, controls: &[f64]) -> Vec<f64> {
     let count = controls.len();
     let joint = |k: usize| match k {
         0 => cubic[0],
@@ -88,17 +61,17 @@ fn at([a, b, c, d]: &Cubic, t: f64) -> f64 {
     s * s * s * a + 3.0 * s * s * t * b + 3.0 * s * t * t * c + t * t * t * d
 }
 
-fn derivative([a, b, c, d]: &Cubic, t: f64) -> f64 {
+pub(super) fn derivative([a, b, c, d]: &Cubic, t: f64) -> f64 {
     let s = 1.0 - t;
     3.0 * (s * s * (b - a) + 2.0 * s * t * (c - b) + t * t * (d - c))
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// A quarter of a circle of radius 500.
-    const QUARTER: [Cubic; 2] = [[0.0, 276.0, 500.0, 500.0], [500.0, 500.0, 276.0, 0.0]];
+    pub(in super::super) const QUARTER: [Cubic; 2] = [[0.0, 276.0, 500.0, 500.0], [500.0, 500.0, 276.0, 0.0]];
 
     #[test]
     fn a_finer_tolerance_takes_more_quadratics() {
@@ -116,19 +89,6 @@ mod tests {
         let cubic = [a, a + (control - a) * 2.0 / 3.0, b + (control - b) * 2.0 / 3.0, b];
         assert_eq!(quadratics([cubic, [0.0; 4]], 1e-9), 1);
         assert!((controls(&cubic, 1)[0] - control).abs() < 1e-9);
-    }
-
-    #[test]
-    fn whole_control_points_keep_levels_and_are_no_farther_than_rounded_ones() {
-        let squares =
-            |cubic: &Cubic, points: &[f64]| differences(cubic, points).iter().map(|d| d * d).sum::<f64>();
-        for axis in &QUARTER {
-            let whole = whole_controls(axis, 3);
-            let rounded: Vec<f64> = controls(axis, 3).iter().map(|v| v.round()).collect();
-            assert!(whole.iter().all(|v| v.fract() == 0.0));
-            assert!(squares(axis, &whole) <= squares(axis, &rounded));
-        }
-        assert_eq!(whole_controls(&QUARTER[1], 3)[0], 500.0);
     }
 
     #[test]

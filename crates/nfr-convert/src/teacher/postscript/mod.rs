@@ -5,6 +5,7 @@ mod align;
 mod curve;
 mod outline;
 mod tables;
+mod whole;
 
 use read_fonts::ps::cff::CffFontRef;
 use read_fonts::ps::charstring::CommandSink;
@@ -81,9 +82,10 @@ impl PostScript {
     /// told from each other, it is the cubic one.
     pub(super) fn hinted(&self, gid: u16, cubic: Outline, ppem: f32) -> Result<Outline, Error> {
         let glyph = self.glyph(gid)?;
-        let points = hinted_points(&glyph.cubic, &cubic, ppem / f32::from(self.units_per_em));
+        let scale = ppem / f32::from(self.units_per_em);
+        let points = hinted_points(&glyph.cubic, &cubic, scale);
         let Some(points) = points else { return Ok(cubic) };
-        let mut outline = glyph.outline(&points);
+        let mut outline = glyph.outline(&points, scale.into());
         outline.advance = cubic.advance;
         // FreeType fills gaps in outlines of any kind, and only TrueType's programs ask for other modes.
         outline.dropout = Dropout::new(false, false);

@@ -6,7 +6,8 @@ use skrifa::PathSink;
 use zeno::Command;
 
 use super::super::outline::Outline;
-use super::curve::{controls, quadratics, whole_controls};
+use super::curve::{controls, quadratics};
+use super::whole::whole_controls;
 
 /// The quadratics stay within this part of an em of the cubic curves, before their control points are rounded to font units.
 const TOLERANCE: f64 = 0.0002;
@@ -18,6 +19,17 @@ enum Source {
     On(usize),
     /// A control point of the quadratics of a cubic.
     Control { cubic: [usize; 4], count: usize, index: usize },
+}
+
+impl Source {
+    /// The place of the point if the cubic outline has these points, without rounding.
+    fn place(&self, points: &[[f32; 2]]) -> [f64; 2] {
+        match self {
+            Self::On(point) => points[*point].map(f64::from),
+            Self::Control { cubic, count, index } => [0, 1]
+                .map(|axis| controls(&cubic.map(|point| f64::from(points[point][axis])), *count)[*index]),
+        }
+    }
 }
 
 /// A glyph whose cubic curves have become quadratic ones.
@@ -45,11 +57,10 @@ impl QuadraticGlyph {
         if glyph.sources.len() > usize::from(u16::MAX) || glyph.contours.len() > i16::MAX as usize {
             return Err(format!("has {} points, and 'glyf' allows {}", glyph.sources.len(), u16::MAX));
         }
-        let axes = [0, 1].map(|axis| glyph.whole(axis));
-        glyph.points = axes[0]
-            .iter()
-            .zip(&axes[1])
-            .map(|(&x, &y)| {
+        glyph.points = glyph
+            .whole()
+            .into_iter()
+            .map(|[x, y]| {
                 fit(x).zip(fit(y)).map(|(x, y)| [x, y]).ok_or_else(|| {
                     format!("has a point at {x}, {y} font units, which does not fit the 16 bits of 'glyf'")
                 })
@@ -63,40 +74,47 @@ impl QuadraticGlyph {
         matches!(self.sources[point], Source::On(_))
     }
 
-    /// The quadratic outline whose cubic one has these points.
-    pub(super) fn outline(&self, cubic: &[[f32; 2]]) -> Outline {
-        let at = |source: &Source| match source {
-            Source::On(point) => cubic[*point],
-            Source::Control { cubic: points, count, index } => [0, 1].map(|axis| {
-                let coordinates = points.map(|point| f64::from(cubic[point][axis]));
-                // Models hold 26.6.
-                ((controls(&coordinates, *count)[*index] * 64.0).round() / 64.0) as f32
-            }),
+    /// The quadratic outline whose cubic one has these points; `scale` is pixels in a font unit.
+    pub(super) fn outline(&self, cubic: &[[f32; 2]], scale: f64) -> Outline {
+        let at = |point: usize| match &self.sources[point] {
+            Source::On(of) => cubic[*of],
+            Source::Control { .. } => {
+                let [plain, moved] =
+                    [&self.cubic.points[..], cubic].map(|cubic| self.sources[point].place(cubic));
+                [0, 1].map(|axis| {
+                    let rounding = f64::from(self.points[point][axis]) - plain[axis];
+                    // Models hold 26.6.
+                    (((moved[axis] + rounding * scale) * 64.0).round() / 64.0) as f32
+                })
+            }
         };
         let mut outline = Outline::default();
         for contour in &self.contours {
             let points: Vec<([f32; 2], bool)> =
-                contour.clone().map(|point| (at(&self.sources[point]), self.is_on_curve(point))).collect();
+                contour.clone().map(|point| (at(point), self.is_on_curve(point))).collect();
             add_contour(&points, &mut outline);
         }
         outline
     }
 
-    /// One coordinate of all points, in whole font units.
-    fn whole(&self, axis: usize) -> Vec<f64> {
-        let at = |point: usize| f64::from(self.cubic.points[point][axis]);
+    /// All points in whole font units.
+    fn whole(&self) -> Vec<[f64; 2]> {
+        let at = |point: usize| self.cubic.points[point].map(f64::from);
         let mut last = None;
-        let coordinate = |source: &Source| match source {
-            Source::On(point) => at(*point).round(),
+        let place = |source: &Source| match source {
+            Source::On(point) => at(*point).map(f64::round),
             Source::Control { cubic, count, index } => {
-                let (_, controls) = match last.take() {
+                let (_, [x, y]) = match last.take() {
                     Some((of, controls)) if of == *cubic => last.insert((of, controls)),
-                    _ => last.insert((*cubic, whole_controls(&cubic.map(at), *count))),
+                    _ => {
+                        let axes = [0, 1].map(|axis| cubic.map(|point| at(point)[axis]));
+                        last.insert((*cubic, whole_controls(&axes, *count)))
+                    }
                 };
-                controls[*index]
+                [x[*index], y[*index]]
             }
         };
-        self.sources.iter().map(coordinate).collect()
+        self.sources.iter().map(place).collect()
     }
 
     /// The points of a contour in the direction of TrueType, in which ink is to the right.
