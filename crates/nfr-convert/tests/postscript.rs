@@ -18,8 +18,8 @@ const MAX_MAE: f64 = 0.0005;
 const MAX_MAE_EXACT: f64 = 0.0004;
 /// The bytes that a model takes at most at the default quality, for smooth and for mono: 122.
 const MAX_BYTES: usize = 140;
-/// The error of the few glyphs of the small fonts at the default quality.
-const MAX_MAE_SMALL: f64 = 0.0006;
+/// The error of the few glyphs of the small fonts at the default quality: 0.0008.
+const MAX_MAE_SMALL: f64 = 0.0009;
 
 fn cantarell() -> Vec<u8> {
     std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/fonts/Cantarell-Regular.otf")).unwrap()
@@ -78,8 +78,9 @@ fn the_models_of_a_postscript_font_draw_what_its_hints_draw() {
 #[test]
 fn an_autohinted_postscript_font_is_learnt_as_well() {
     let data = cantarell();
+    let ascii: String = (' '..='~').collect();
     let options = Options { hinter: Hinter::Auto, ..Options::default() };
-    let [neural, unhinted] = errors(&data, &converted_with(&data, Some("Hamburgefonstiv&@"), options));
+    let [neural, unhinted] = errors(&data, &converted_with(&data, Some(&ascii), options));
     assert!(neural < MAX_MAE && unhinted > 15.0 * neural, "{neural}, unhinted {unhinted}");
 }
 
