@@ -2,8 +2,10 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::*;
-use crate::model::outline::hint::{Interpolation, scale_of};
-use crate::model::outline::weights::AxisHints;
+use crate::model::outline::OutlinePoints;
+use crate::model::outline::hint::{Interpolation, hint, scale_of};
+use crate::model::outline::weights::{AxisHints, Correction, OutlineModel, OutlineWeights};
+use crate::model::sizes::{Origin, Scale};
 
 /// 16 pixels per em of 1024 units: a unit is 1/64 pixel.
 const EQUAL: i32 = 0x10000;
@@ -50,6 +52,38 @@ fn a_local_track_moves_its_own_points_alone() {
 fn without_tracks_points_are_scaled() {
     let places = placed(&[0, 100, -7], &[true, false, true], &hints(&[], &[], &[]), &[], EQUAL);
     assert_eq!(places, [0.0, 100.0, -7.0]);
+}
+
+#[test]
+fn a_control_point_of_a_track_goes_where_the_track_is() {
+    // Two control points between two points on the curve, the second one with a track.
+    let on_curve = [true, false, false, true];
+    let hints = hints(&[0, 60, 100], &[0, 255, 1, 2], &[false, true, false]);
+    let places = placed(&[0, 40, 60, 100], &on_curve, &hints, &[0, 9, 0], EQUAL);
+    assert_eq!(places, [0.0, 40.0, 69.0, 100.0]);
+}
+
+#[test]
+fn a_correction_leads_to_a_multiple_of_64ths() {
+    let mut y = hints(&[0, 100], &[0, 255, 1], &[]);
+    y.moves = vec![0, 50];
+    y.corrections = vec![Correction { size: 0, point: 1, by: 3 }];
+    let points = OutlinePoints {
+        coordinates: [vec![0, 50, 10], vec![0, 33, 100]],
+        on_curve: vec![true; 3],
+        ends: vec![3],
+        is_unfit: false,
+    };
+    let scale = Scale::new(1024, 16, 16).unwrap().with_origin(Origin::PostScript);
+    let weights = OutlineWeights { axes: [AxisHints::default(), y], ..OutlineWeights::default() };
+    let mut places = [Vec::new(), Vec::new()];
+    let mut model = OutlineModel::new(points, weights, scale, 0..1).unwrap();
+    hint(&model, &scale.at(16.0), &mut places);
+    // Without the correction it is at 49.5 of 1/64 pixel, in between.
+    assert_eq!(places[1], [0, 4 * (50 + 3), 4 * 150]);
+    model.weights.axes[1].corrections.clear();
+    hint(&model, &scale.at(16.0), &mut places);
+    assert_eq!(places[1], [0, 198, 4 * 150]);
 }
 
 /// One control point of so many quadratic curves, in floating point.

@@ -115,6 +115,13 @@ fn an_edge_of_a_stem_is_on_whole_pixels_or_as_far_from_them_as_the_stem_is_wide(
     view.hinted = &hinted;
     let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
     assert_eq!((upper[5], upper[9]), (320 + 68, 640 - 263));
+    // So it is below one that is not on whole pixels.
+    let hinted = [0, 320, 0, 642];
+    view.hinted = &hinted;
+    let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
+    assert_eq!(upper[9], 642 - 262);
+    let hinted = [0, 320, 0, 640];
+    view.hinted = &hinted;
     // Hints of TrueType round distances to the nearest.
     view.scaling.rounds_down = false;
     let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;

@@ -162,7 +162,8 @@ mod tests {
         let mut sums = [0.0; 2];
         for radius in 100..200 {
             let cubic = QUARTER.map(|axis| axis.map(|v| (v * f64::from(radius) / 500.0).round()));
-            let rounded = cubic.map(|axis| controls(&axis, 3).iter().map(|v| v.round()).collect::<Vec<f64>>());
+            let rounded =
+                cubic.map(|axis| controls(&axis, 3).iter().map(|v| v.round()).collect::<Vec<f64>>());
             let whole = whole_controls(&cubic, 3);
             assert!(whole.iter().flatten().all(|v| v.fract() == 0.0));
             assert_eq!([whole[1][0], whole[0][2]], [f64::from(radius); 2]);
