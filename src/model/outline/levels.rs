@@ -6,8 +6,9 @@
 
 use core::ops::Range;
 
-use super::hint::{Tracks, in_units, interpolated};
-use super::weights::UNTOUCHED;
+use super::iup::interpolated;
+use super::places::in_units;
+use super::weights::{AxisHints, UNTOUCHED};
 use crate::number::mul_fixed;
 
 /// The most control points between two points on the curve that stand for one cubic curve.
@@ -17,7 +18,11 @@ const PARTS: i32 = 16;
 
 /// The points of a contour whose tracks move levels. Places are in units of 1/256 pixel.
 pub(super) struct Contour<'a> {
-    pub(super) tracks: &'a Tracks<'a>,
+    pub(super) hints: &'a AxisHints,
+    /// How far each track is moved from its scaled level, in 1/64 pixel.
+    pub(super) moves: &'a [i16],
+    /// Whether each point is on the curve.
+    pub(super) on_curve: &'a [bool],
     /// The coordinates of all points, in font units.
     pub(super) units: &'a [i16],
     /// From font units to 1/64 pixel, in 1/65536.
@@ -33,7 +38,7 @@ impl Contour<'_> {
         for at in contour.clone() {
             out[at] = self.track(at).map_or_else(|| self.moved(self.level(at)), |(_, _, hinted)| hinted);
         }
-        let on_curve = |at: usize| self.tracks.on_curve.get(at).copied().unwrap_or(true);
+        let on_curve = |at: usize| self.on_curve.get(at).copied().unwrap_or(true);
         let Some(first) = contour.clone().find(|at| on_curve(*at)) else { return };
         let (start, count) = (contour.start, contour.len());
         let point = |step: usize| start + (first - start + step) % count;
@@ -53,12 +58,12 @@ impl Contour<'_> {
 
     /// The track of a point, if one moves it.
     fn track(&self, point: usize) -> Option<Knot> {
-        let track = self.tracks.track_of.get(point).filter(|track| **track != UNTOUCHED)?;
+        let track = self.hints.track_of.get(point).filter(|track| **track != UNTOUCHED)?;
         self.knot(usize::from(*track))
     }
 
     fn knot(&self, track: usize) -> Option<Knot> {
-        let (units, moved) = (i32::from(*self.tracks.levels.get(track)?), *self.tracks.moves.get(track)?);
+        let (units, moved) = (i32::from(*self.hints.levels.get(track)?), *self.moves.get(track)?);
         let hinted = in_units(mul_fixed(units, self.scale).wrapping_add(moved.into()));
         Some((units * PARTS, self.plain(units * PARTS), hinted))
     }
@@ -72,10 +77,10 @@ impl Contour<'_> {
     /// Where the tracks below and above a level move it.
     fn moved(&self, level: i32) -> i32 {
         let plain = self.plain(level);
-        let above = self.tracks.levels.partition_point(|other| i32::from(*other) * PARTS <= level);
-        let is_knot = |track: &usize| !self.tracks.is_local.get(*track).is_some_and(|is_local| *is_local);
+        let above = self.hints.levels.partition_point(|other| i32::from(*other) * PARTS <= level);
+        let is_knot = |track: &usize| !self.hints.is_local.get(*track).is_some_and(|is_local| *is_local);
         let lower = (0..above).rev().find(is_knot).and_then(|track| self.knot(track));
-        let upper = (above..self.tracks.levels.len()).find(is_knot).and_then(|track| self.knot(track));
+        let upper = (above..self.hints.levels.len()).find(is_knot).and_then(|track| self.knot(track));
         match (lower, upper) {
             (Some(a), _) if a.0 == level => a.2,
             (Some(a), Some(b)) => interpolated([a, b], level, plain),

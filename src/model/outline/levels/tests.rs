@@ -3,8 +3,8 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::model::outline::OutlinePoints;
-use crate::model::outline::hint::{Interpolation, hint, scale_of};
 use crate::model::outline::weights::{AxisHints, Correction, OutlineModel, OutlineWeights};
+use crate::model::outline::{Interpolation, Tracks, hint, scale_of};
 use crate::model::sizes::{Origin, Scale};
 
 /// 16 pixels per em of 1024 units: a unit is 1/64 pixel.

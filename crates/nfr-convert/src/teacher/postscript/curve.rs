@@ -67,11 +67,11 @@ pub(super) fn derivative([a, b, c, d]: &Cubic, t: f64) -> f64 {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
 
     /// A quarter of a circle of radius 500.
-    pub(in super::super) const QUARTER: [Cubic; 2] = [[0.0, 276.0, 500.0, 500.0], [500.0, 500.0, 276.0, 0.0]];
+    const QUARTER: [Cubic; 2] = [[0.0, 276.0, 500.0, 500.0], [500.0, 500.0, 276.0, 0.0]];
 
     #[test]
     fn a_finer_tolerance_takes_more_quadratics() {

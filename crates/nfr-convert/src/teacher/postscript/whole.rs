@@ -143,8 +143,10 @@ fn metric(cubic: &[Cubic; 2], t: f64) -> [[f64; 2]; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::curve::tests::QUARTER;
     use super::*;
+
+    /// A quarter of a circle of radius 500.
+    const QUARTER: [Cubic; 2] = [[0.0, 276.0, 500.0, 500.0], [500.0, 500.0, 276.0, 0.0]];
 
     /// The square of the distance of a spline from its cubic.
     fn squares(cubic: &[Cubic; 2], controls: &[Vec<f64>; 2]) -> f64 {
