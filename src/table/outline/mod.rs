@@ -5,6 +5,7 @@ mod index;
 mod parts;
 mod positions;
 mod rules;
+mod scores;
 mod sections;
 mod shared;
 mod structure;

@@ -4,7 +4,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::rules::{Candidate, Neighbours, Ranked, Scaling, Scores, View, coding_order, to_grid};
+use super::rules::{Neighbours, Scaling, View, coding_order, to_grid};
+use super::scores::{Candidate, Ranked, Scores};
 use super::shared::Source;
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};

@@ -64,7 +64,7 @@ struct Cluster {
     is_local: bool,
 }
 
-/// Finds the hints of a glyph.
+/// Finds the hints of a glyph. An axis that hinting leaves alone, as seen with the fidelity `still`, gets none.
 pub(crate) fn fit(
     samples: &OutlineSamples,
     units_per_em: u16,

@@ -1,5 +1,3 @@
-use proptest::prelude::*;
-
 use super::*;
 use crate::number::mul_fixed;
 
@@ -16,74 +14,6 @@ fn tracks_are_coded_from_the_ends_to_the_middles_of_gaps() {
             coded[usize::from(track)] = true;
         }
         assert!(coded.iter().all(|is| *is));
-    }
-}
-
-/// What `Scores::rank` finds, from the words of the specification: position, weight, rule and score.
-fn naive(positions: [i32; LANES], scores: [i32; LANES], valid: usize) -> (Vec<(i32, u32, usize, u16)>, u32) {
-    let mut found: Vec<(i32, u32, usize, u16)> = Vec::new();
-    for rule in (0..RULES).filter(|rule| VALID[valid].lanes[*rule] != 0) {
-        let (weight, score) = (scores[rule] as u32 + 1, scores[rule] as u16);
-        match found.iter_mut().find(|candidate| candidate.0 == positions[rule]) {
-            Some(candidate) => {
-                candidate.1 += weight;
-                if score > candidate.3 {
-                    (candidate.2, candidate.3) = (rule, score);
-                }
-            }
-            None => found.push((positions[rule], weight, rule, score)),
-        }
-    }
-    let total = found.iter().map(|candidate| candidate.1).sum();
-    found.sort_by_key(|candidate| std::cmp::Reverse(candidate.1));
-    found.truncate(CANDIDATES);
-    (found, total)
-}
-
-/// Numbers of all lanes, as they are kept.
-fn room(lanes: [i32; LANES]) -> [i32; ROOM] {
-    core::array::from_fn(|lane| lanes.get(lane).copied().unwrap_or(0))
-}
-
-fn check<const N: usize>(positions: [i32; LANES], scores: [i32; LANES], valid: usize, hinted: i32) {
-    let rules = Rules::<N> { positions: room(positions), valid };
-    let mut known = Scores(scores.map(|score| score as u16));
-    let mut ranked = Ranked::default();
-    known.rank(&rules, &mut ranked);
-    let (expected, total) = naive(positions, scores, valid);
-    assert_eq!(ranked.total, total);
-    for (rank, expected) in expected.iter().enumerate() {
-        let Candidate { position, weight, rule, score } =
-            ranked.candidate(rank, &known).expect("a candidate");
-        assert_eq!((position, weight, rule, score), *expected, "number {rank}");
-    }
-    assert!(ranked.candidate(expected.len(), &known).is_none());
-    known.update(&rules, hinted);
-    let learnt = known.0.map(i32::from);
-    for rule in 0..RULES {
-        let (score, is_valid) = (scores[rule], VALID[valid].lanes[rule] != 0);
-        let expected = match positions[rule] == hinted {
-            _ if !is_valid => score,
-            true => score + ((65535 - score) >> 3),
-            false => score - (score >> 3),
-        };
-        assert_eq!(learnt[rule], expected, "rule {rule}");
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn candidates_and_scores_are_those_of_a_plain_loop(
-        positions in prop::array::uniform12(prop_oneof![-2..3i32, any::<i32>()]),
-        scores in prop::array::uniform12(0..=65535i32),
-        valid in 0..16usize,
-        hinted in -2..3i32,
-    ) {
-        check::<3>(positions, scores, valid, hinted);
-        check::<2>(positions, scores, valid & (LOWER | BEFORE | SHARED), hinted);
-        check::<1>(positions, scores, valid & (BEFORE | SHARED), hinted);
     }
 }
 
