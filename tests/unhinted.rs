@@ -21,7 +21,7 @@ fn draw(rasterizer: &mut Rasterizer, character: char, ppem: f32, hinting: bool) 
 
 #[test]
 fn without_hints_a_glyph_is_the_plain_outline() {
-    for name in ["outline", "outline-mono"] {
+    for name in ["outline", "outline-mono", "postscript"] {
         let mut hinted = Rasterizer::new(&font(name));
         let bare = Font::new(without_models(&bytes(name))).unwrap();
         let mut plain = Rasterizer::new(&bare).with_missing_model(MissingModel::Outline);

@@ -9,9 +9,9 @@ use nfr::{Bitmap, DrawOptions, Error, Font, Rasterizer};
 
 /// The fonts: `NAME.ttf`, whose vectors are in `NAME.txt`.
 pub(crate) const FONTS: &[&str] = if cfg!(feature = "networks") {
-    &["sans", "serif", "mono", "outline", "outline-mono", NETWORK]
+    &["sans", "serif", "mono", "outline", "outline-mono", "postscript", NETWORK]
 } else {
-    &["sans", "serif", "mono", "outline", "outline-mono"]
+    &["sans", "serif", "mono", "outline", "outline-mono", "postscript"]
 };
 /// The font that has networks. Without the feature `networks` it is left out.
 const NETWORK: &str = "network";

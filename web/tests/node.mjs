@@ -34,7 +34,7 @@ class Hash {
 const tests = {
   "every vector is drawn as it is written down"() {
     let count = 0;
-    for (const name of ["sans", "serif", "mono", "outline", "outline-mono"]) {
+    for (const name of ["sans", "serif", "mono", "outline", "outline-mono", "postscript"]) {
       const opened = font(name);
       for (const line of lines(`${name}.txt`)) {
         const [glyph, ppem, x, y] = line.split(" ").map(Number);

@@ -119,7 +119,7 @@ fn fit_axis(
     let mut last: Vec<f64> = vec![f64::INFINITY; clusters.len()];
     while chosen.iter().filter(|c| **c).count() < MAX_TRACKS {
         let mut best: Option<(usize, f64, Vec<f64>)> = None;
-        let is_free = |k: &usize| !chosen[*k] && !(has_twins && chosen[k ^ 1]);
+        let is_free = |k: &usize| !(chosen[*k] || has_twins && chosen[k ^ 1]);
         let mut order: Vec<usize> = (0..clusters.len()).filter(is_free).collect();
         order.sort_by(|a, b| last[*b].total_cmp(&last[*a]));
         for k in order {

@@ -40,18 +40,19 @@ impl Lattice {
     fn new(cubic: &[Cubic; 2], count: usize) -> Self {
         let exact = cubic.each_ref().map(|axis| controls(axis, count));
         let whole = exact.each_ref().map(|axis| axis.iter().map(|v| v.round()).collect::<Vec<f64>>());
-        let rounding = |k: usize, axis: usize| whole[axis][k] - exact[axis][k];
-        let is_fixed = (0..count).map(|k| [0, 1].map(|axis| rounding(k, axis).abs() <= WHOLE)).collect();
+        let roundings: Vec<Step> =
+            (0..count).map(|k| (k, [0, 1].map(|axis| whole[axis][k] - exact[axis][k]))).collect();
+        let is_fixed = roundings.iter().map(|(_, by)| by.map(|by| by.abs() <= WHOLE)).collect();
         let size = 2 * count;
         let (mut curvature, mut slope) = (vec![0.0; size * size], vec![0.0; size]);
-        let apart = [0, 1].map(|axis| differences(&cubic[axis], &exact[axis]));
-        for sample in 0..count * SAMPLES {
+        let [x, y] = [0, 1].map(|axis| differences(&cubic[axis], &exact[axis]));
+        let apart = x.into_iter().zip(y).map(<[f64; 2]>::from);
+        for (sample, apart) in apart.enumerate() {
             let weights = weights(sample, count);
             let metric = metric(cubic, (sample + 1) as f64 / (count * SAMPLES) as f64);
             for (i, a) in &weights {
                 for axis in 0..2 {
-                    slope[2 * i + axis] +=
-                        (0..2).map(|to| a * metric[axis][to] * apart[to][sample]).sum::<f64>();
+                    slope[2 * i + axis] += (0..2).map(|to| a * metric[axis][to] * apart[to]).sum::<f64>();
                     for (j, b) in &weights {
                         for to in 0..2 {
                             curvature[(2 * i + axis) * size + 2 * j + to] += a * b * metric[axis][to];
@@ -61,10 +62,7 @@ impl Lattice {
             }
         }
         let mut lattice = Self { whole, is_fixed, curvature, slope };
-        for k in 0..count {
-            let by = [0, 1].map(|axis| lattice.whole[axis][k] - exact[axis][k]);
-            lattice.tilt((k, by));
-        }
+        roundings.into_iter().for_each(|step| lattice.tilt(step));
         lattice
     }
 

@@ -26,7 +26,7 @@ macro_rules! vectors {
     };
 }
 
-const OUTLINES: &[Vectors] = vectors!["outline", "outline-mono"];
+const OUTLINES: &[Vectors] = vectors!["outline", "outline-mono", "postscript"];
 #[cfg(feature = "fields")]
 const FIELDS: &[Vectors] = vectors!["sans", "serif", "mono"];
 #[cfg(not(feature = "fields"))]
