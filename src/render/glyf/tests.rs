@@ -78,23 +78,35 @@ fn both(glyf: &[u8], loca: &Loca<'_>, hmtx: &Hmtx<'_>, glyph: u32) -> [Option<Ou
         .map(|points| points.filter(|points| !points.is_unfit))
 }
 
+/// Compares all glyphs of a font, and counts its composite ones.
+fn compare_font(path: &std::path::Path) -> usize {
+    let (name, data) = (path.display(), std::fs::read(path).unwrap());
+    let font = FontRef::new(&data).unwrap();
+    let (glyf, loca, hmtx) = (font.glyf().unwrap(), font.loca(None).unwrap(), font.hmtx().unwrap());
+    let glyf = glyf.offset_data().as_bytes();
+    let mut composites = 0;
+    for glyph in 0..u32::from(font.maxp().unwrap().num_glyphs()) {
+        let [own, expected] = both(glyf, &loca, &hmtx, glyph);
+        assert!(own.is_some(), "glyph {glyph} of {name} cannot be read");
+        assert_eq!(own, expected, "glyph {glyph} of {name}");
+        let outlines = Outlines { glyf, loca: loca.clone() };
+        composites += usize::from(matches!(outlines.get(glyph), Some(Outline::Composite { .. })));
+    }
+    composites
+}
+
 #[test]
 fn all_outlines_of_the_fonts_are_those_of_read_fonts() {
-    let mut composites = 0;
-    for name in ["DejaVuSans.ttf", "LiberationSerif-Regular.ttf", "Roboto_500Medium.ttf"] {
-        let data = std::fs::read(format!("{}/fonts/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
-        let font = FontRef::new(&data).unwrap();
-        let (glyf, loca, hmtx) = (font.glyf().unwrap(), font.loca(None).unwrap(), font.hmtx().unwrap());
-        let glyf = glyf.offset_data().as_bytes();
-        for glyph in 0..u32::from(font.maxp().unwrap().num_glyphs()) {
-            let [own, expected] = both(glyf, &loca, &hmtx, glyph);
-            assert!(own.is_some(), "glyph {glyph} of {name} cannot be read");
-            assert_eq!(own, expected, "glyph {glyph} of {name}");
-            let outlines = Outlines { glyf, loca: loca.clone() };
-            composites += usize::from(matches!(outlines.get(glyph), Some(Outline::Composite { .. })));
-        }
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let composites = ["outline", "outline-mono", "postscript", "serif"]
+        .map(|name| compare_font(&root.join(format!("spec/vectors/{name}.ttf"))));
+    assert!(composites.iter().sum::<usize>() > 10, "{composites:?} composite glyphs");
+    // The published package has no other fonts.
+    if root.join("fonts").exists() {
+        let composites = ["DejaVuSans", "LiberationSerif-Regular", "Roboto_500Medium"]
+            .map(|name| compare_font(&root.join(format!("fonts/{name}.ttf"))));
+        assert!(composites.iter().sum::<usize>() > 1000, "{composites:?} composite glyphs");
     }
-    assert!(composites > 1000, "{composites} composite glyphs");
 }
 
 /// Glyphs from their bytes: `glyf` and `loca`.
