@@ -12,7 +12,7 @@ pub(super) struct Distortion<'s> {
     extents: Vec<f64>,
     /// The points of each contour.
     contours: Vec<std::ops::Range<usize>>,
-    /// What does not count of a point's distance from its hinted position, in 1/64 pixel.
+    /// A point may be this far from its hinted position at no cost, in 1/64 pixel.
     noise: f64,
 }
 
@@ -43,7 +43,7 @@ impl<'s> Distortion<'s> {
         Self { samples, axis, extents, contours: samples.points.contours().collect(), noise }
     }
 
-    /// The contours that a track of some points moves; whether it moves these points alone.
+    /// The contours that a track of some points moves. A local track moves these points alone.
     pub(super) fn contours_of(&self, points: &[u16], is_local: bool) -> Vec<usize> {
         if self.samples.interpolation(self.axis) == Interpolation::Level && !is_local {
             return (0..self.contours.len()).collect();
@@ -116,11 +116,11 @@ impl<'s> Distortion<'s> {
     }
 }
 
-/// Hinted points of PostScript outlines are rounded down, and those of curves by themselves, so that this much of their distance from what the
-/// stems make of them, in 1/64 pixel, is noise that no reader sees: along a curve it evens out.
+/// Each point of a PostScript outline is rounded down by itself, which moves it by half of 1/64 pixel on average, and by up to this much more or
+/// less. Along a curve the difference evens out.
 const ROUNDING: f64 = 0.5;
 
-/// What does not count of a point's distance from its hinted position along an axis, in 1/64 pixel.
+/// How far a point may be from its hinted position along an axis at no cost, in 1/64 pixel.
 pub(super) fn noise(samples: &OutlineSamples, axis: usize, fidelity: Fidelity) -> f64 {
     let follows_stems = samples.interpolation(axis) == Interpolation::Level && !fidelity.is_exact();
     if follows_stems { ROUNDING } else { 0.0 }

@@ -8,8 +8,8 @@ use nfr::internals::model::outline::{Interpolation, OutlinePoints, rounded_down,
 use nfr::internals::model::sizes::Origin;
 use nfr::internals::mul_fixed;
 
-/// Points of what were cubic curves are combinations of rounded ones, and rounded themselves: they are this far from their scaled places, in
-/// 1/64 pixel, where nothing is hinted.
+/// How far the points of what were cubic curves are from their scaled places where nothing is hinted, in 1/64 pixel: each is a combination
+/// of rounded points, and rounded itself.
 const ROUNDINGS: u32 = 2;
 
 /// A glyph's points, and where hinting puts them at each size.
