@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::rules::{Neighbours, Scaling, View, coding_order, to_grid};
-use super::scores::{Candidate, Ranked, Scores};
+use super::scores::{CANDIDATES, Candidate, Scores, Votes};
 use super::shared::Source;
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
@@ -64,8 +64,6 @@ pub(super) struct Axis<'r> {
     coded: usize,
     /// What each track refers to.
     referred: &'r Referred<'r>,
-    /// Working memory.
-    ranked: Ranked,
 }
 
 /// A track, and what is known of it from smaller sizes.
@@ -94,7 +92,6 @@ impl<'r> Axis<'r> {
             tracks: coding_order(count).into_iter().map(track).collect(),
             positions: vec![0; 3 * usize::from(count)],
             coded: 0,
-            ranked: Ranked::default(),
         }
     }
 
@@ -126,7 +123,7 @@ impl<'r> Axis<'r> {
             } else {
                 let view = View { levels, plain, hinted, before, scaling };
                 let at = At { axis: self.axis, size, missed, shared };
-                let (moved, is_first) = track.code(model, &view, at, &mut self.ranked, moves[number], choose);
+                let (moved, is_first) = track.code(model, &view, at, moves[number], choose);
                 moves[number] = moved;
                 missed += usize::from(!is_first);
             }
@@ -155,16 +152,15 @@ impl Track {
         model: &mut ContextModel<'_, C>,
         view: &View<'_>,
         at: At,
-        ranked: &mut Ranked,
         moved: i16,
         choose: Choose<'_>,
     ) -> (i16, bool) {
         // The lowest and the highest track have few rules.
         match self.neighbours.kind() {
-            _ if cfg!(feature = "small") => self.code_by::<C, 3>(model, view, at, ranked, moved, choose),
-            0 => self.code_by::<C, 1>(model, view, at, ranked, moved, choose),
-            1 => self.code_by::<C, 2>(model, view, at, ranked, moved, choose),
-            _ => self.code_by::<C, 3>(model, view, at, ranked, moved, choose),
+            _ if cfg!(feature = "small") => self.code_by::<C, 3>(model, view, at, moved, choose),
+            0 => self.code_by::<C, 1>(model, view, at, moved, choose),
+            1 => self.code_by::<C, 2>(model, view, at, moved, choose),
+            _ => self.code_by::<C, 3>(model, view, at, moved, choose),
         }
     }
 
@@ -174,42 +170,27 @@ impl Track {
         model: &mut ContextModel<'_, C>,
         view: &View<'_>,
         at: At,
-        ranked: &mut Ranked,
         moved: i16,
         choose: Choose<'_>,
     ) -> (i16, bool) {
         let number = usize::from(self.number);
         let plain = view.plain[number];
         let rules = view.rules::<N>(number, self.neighbours, at.shared);
-        self.scores.rank(&rules, ranked);
-        let mut candidates = Candidates { ranked, scores: &self.scores };
+        let votes = self.scores.votes(&rules);
         let kind = self.neighbours.kind();
         let state = State { misses: usize::from(self.misses & 3), missed: at.missed, kind };
         let moved = if C::WRITES {
-            asked(model, &mut candidates, state, choose, (at.axis, number, at.size), plain, moved)
+            asked(model, &votes, state, choose, (at.axis, number, at.size), plain, moved)
         } else {
             moved
         };
         let wanted = plain.wrapping_add(moved.into());
-        let (position, is_first) = code_position(model, &mut candidates, state, wanted);
+        let (position, is_first) = code_position(model, votes, state, wanted);
         self.misses = self.misses << 1 | u8::from(!is_first);
         // Damaged bytes may give any position.
         let moved = position.wrapping_sub(plain) as i16;
         self.scores.update(&rules, plain.wrapping_add(moved.into()));
         (moved, is_first)
-    }
-}
-
-/// The candidates for a position.
-struct Candidates<'s> {
-    ranked: &'s mut Ranked,
-    scores: &'s Scores,
-}
-
-impl Candidates<'_> {
-    #[inline(always)]
-    fn get(&mut self, rank: usize) -> Option<Candidate> {
-        self.ranked.candidate(rank, self.scores)
     }
 }
 
@@ -224,20 +205,19 @@ struct State {
     kind: usize,
 }
 
-fn asked<C: Coder>(
+fn asked<C: Coder, const N: usize>(
     model: &ContextModel<'_, C>,
-    candidates: &mut Candidates<'_>,
+    votes: &Votes<N>,
     state: State,
     choose: Choose<'_>,
     (axis, track, size): (usize, usize, usize),
     plain: i32,
     wanted: i16,
 ) -> i16 {
-    let total = candidates.ranked.total;
-    let candidates = candidates.ranked.all(candidates.scores);
+    let candidates: Vec<Candidate> = votes.all().collect();
     let moves: Vec<i32> = candidates.iter().map(|c| c.position.wrapping_sub(plain)).collect();
     let price = |moved: i32, visit: &mut dyn FnMut(u32)| {
-        price(model, candidates, total, state, plain.wrapping_add(moved), visit);
+        price(model, &candidates, votes.left, state, plain.wrapping_add(moved), visit);
     };
     let chosen = choose(&Question { axis, track, size, wanted, candidates: &moves, price: &price });
     chosen.clamp(i16::MIN.into(), i16::MAX.into()) as i16
@@ -275,22 +255,23 @@ fn split(position: i32, first: i32) -> (i32, i32) {
 
 /// Codes a position; also says whether it is the first candidate's.
 #[inline(always)]
-fn code_position<C: Coder>(
+fn code_position<C: Coder, const N: usize>(
     model: &mut ContextModel<'_, C>,
-    candidates: &mut Candidates<'_>,
+    mut votes: Votes<N>,
     state: State,
     position: i32,
 ) -> (i32, bool) {
-    let (mut left, mut rank, mut first) = (candidates.ranked.total, 0, 0);
-    while let Some(candidate) = candidates.get(rank) {
-        if model.flag(HIT, hit_contexts(&candidate, rank, left, state), candidate.position == position) {
+    let mut first = 0;
+    for rank in 0..CANDIDATES {
+        let Some(candidate) = votes.take() else { break };
+        let contexts = hit_contexts(&candidate, rank, votes.left, state);
+        if model.flag(HIT, contexts, candidate.position == position) {
             return (candidate.position, rank == 0);
         }
         if rank == 0 {
             first = candidate.position;
         }
-        left -= candidate.weight;
-        rank += 1;
+        votes.left -= candidate.weight;
     }
     let (pixels, fraction) = split(position, first);
     let pixels = model.signed(MISS_PIXELS, miss_pixels_context(state), pixels);
@@ -331,7 +312,7 @@ pub(super) fn code_shared<C: Coder>(
     moves: &mut Vec<i16>,
 ) {
     let mut track = Track { number: 0, neighbours: Neighbours::default(), scores: Scores::new(0), misses: 0 };
-    let (mut before, mut ranked) = (None, Ranked::default());
+    let mut before = None;
     for (size, scaling) in sizes {
         let plain = [mul_fixed(level.into(), scaling.factor)];
         let view = View {
@@ -343,8 +324,7 @@ pub(super) fn code_shared<C: Coder>(
         };
         let at = At { axis: 0, size, missed: 0, shared: None };
         let wanted = moves.get(size).copied().unwrap_or(0);
-        let (moved, _) =
-            track.code(model, &view, at, &mut ranked, wanted, &mut |question| question.wanted.into());
+        let (moved, _) = track.code(model, &view, at, wanted, &mut |question| question.wanted.into());
         before = Some([plain[0].wrapping_add(moved.into())]);
         if !C::WRITES {
             moves.push(moved);

@@ -86,7 +86,8 @@ pub(super) fn to_grid(position: i32) -> i32 {
 /// The positions that the rules give a track: of rules in the first `N` groups of four; no other has what it needs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rules<const N: usize> {
-    pub(super) positions: [i32; ROOM],
+    /// Four at a time.
+    pub(super) lanes: [i32x4; N],
     /// The number of a row of [`VALID`].
     pub(super) valid: usize,
 }
@@ -125,12 +126,18 @@ pub(super) static VALID: [Valid; 16] = {
     rows
 };
 
+/// As wide as what it masks, or as few bytes as can be.
+#[cfg(not(feature = "small"))]
+type Mask = i32;
+#[cfg(feature = "small")]
+type Mask = i8;
+
 #[derive(Clone, Copy)]
 pub(super) struct Valid {
     /// A bit for each rule.
     pub(super) bits: u32,
     /// The same as masks.
-    pub(super) lanes: [i8; ROOM],
+    pub(super) lanes: [Mask; ROOM],
 }
 
 impl View<'_> {
@@ -175,9 +182,9 @@ impl View<'_> {
             at[7] = self.between([a, b], track);
         }
         if self.scaling.rounds_down {
-            self.of_stems(track, [lower, upper], &mut at);
+            at = self.of_stems(track, [lower, upper], at);
         }
-        Rules { positions: at, valid }
+        Rules { lanes: lanes(&at), valid }
     }
 
     /// The position of a track, interpolated between two others.
@@ -189,7 +196,7 @@ impl View<'_> {
     /// The rules that differ for PostScript's hints: they put one edge of a stem on whole pixels, where the tracks around it lead it,
     /// and the other edge as far away as the stem is wide. Positions are rounded down.
     #[inline(never)]
-    fn of_stems(&self, track: usize, [lower, upper]: [Option<usize>; 2], at: &mut [i32; ROOM]) {
+    fn of_stems(&self, track: usize, [lower, upper]: [Option<usize>; 2], mut at: [i32; ROOM]) -> [i32; ROOM] {
         let led = |track: usize| match (lower, upper) {
             (Some(a), Some(b)) => self.between([a, b], track),
             _ => self.plain[track],
@@ -211,6 +218,7 @@ impl View<'_> {
             let [down, up] = self.width(track, b);
             at[9] = self.hinted[b].wrapping_sub(if is_whole(self.hinted[b]) { up } else { down });
         }
+        at
     }
 
     /// How far a track is above another, rounded down and up.
@@ -221,12 +229,6 @@ impl View<'_> {
 }
 
 impl<const N: usize> Rules<N> {
-    /// The positions that rules give, four at a time.
-    #[inline(always)]
-    pub(super) fn lanes(&self) -> [i32x4; N] {
-        lanes(&self.positions)
-    }
-
     /// For each rule that has what it needs, all bits.
     #[inline(always)]
     pub(super) fn valid(&self) -> [i32x4; N] {
@@ -235,7 +237,7 @@ impl<const N: usize> Rules<N> {
 }
 
 #[inline(always)]
-fn lanes<const N: usize, T: Copy + Into<i32>>(from: &[T; ROOM]) -> [i32x4; N] {
+pub(super) fn lanes<const N: usize, T: Copy + Into<i32>>(from: &[T; ROOM]) -> [i32x4; N] {
     core::array::from_fn(|group| i32x4::new([0, 1, 2, 3].map(|lane| from[(4 * group + lane) % ROOM].into())))
 }
 

@@ -2,7 +2,7 @@
 
 use wide::i32x4;
 
-use super::rules::{LANES, ROOM, RULES, Rules, VALID};
+use super::rules::{LANES, ROOM, RULES, Rules};
 
 /// The most candidates that are tried before a position is coded as a number.
 pub(super) const CANDIDATES: usize = 2;
@@ -18,9 +18,15 @@ fn equal<const N: usize>(lanes: [i32x4; N], number: i32) -> [i32x4; N] {
     lanes.map(|lanes| lanes.simd_eq(number))
 }
 
-/// How often each rule was right, in 1/65536.
+/// A score, in 1/65536: as wide as they are computed with, or as few bytes as can be.
+#[cfg(not(feature = "small"))]
+type Score = i32;
+#[cfg(feature = "small")]
+type Score = u16;
+
+/// How often each rule was right.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scores([u16; LANES]);
+pub(super) struct Scores([Score; LANES]);
 
 /// The initial scores by the kind of neighbours, in 1/256.
 const INITIAL: [[u8; RULES]; 3] = [
@@ -33,7 +39,7 @@ impl Scores {
     pub(super) fn new(kind: usize) -> Self {
         let mut scores = [0; LANES];
         for (score, initial) in scores.iter_mut().zip(INITIAL[kind]) {
-            *score = u16::from(initial) << 8;
+            *score = Score::from(initial) << 8;
         }
         Self(scores)
     }
@@ -44,76 +50,35 @@ impl Scores {
         i32x4::new([0, 1, 2, 3].map(|lane| self.0[(4 * group + lane) % LANES].into()))
     }
 
-    /// Groups the rules by their positions.
+    /// The votes of the rules that have what they need.
     #[inline(always)]
-    pub(super) fn rank<const N: usize>(&self, rules: &Rules<N>, ranked: &mut Ranked) {
-        let (positions, valid): ([_; N], [_; N]) = (rules.lanes(), rules.valid());
-        let weights: [i32x4; N] =
-            core::array::from_fn(|group| (self.group(group) + i32x4::splat(1)) & valid[group]);
-        let mut left = VALID[rules.valid % VALID.len()].bits;
-        (ranked.count, ranked.selected, ranked.total) = (0, 0, 0);
-        for place in &mut ranked.places {
-            if left == 0 {
-                break;
-            }
-            let position = rules.positions[left.trailing_zeros() as usize % ROOM];
-            let equal = equal(positions, position);
-            let (mut rules, mut weight) = (0, i32x4::splat(0));
-            for (group, equal) in equal.into_iter().enumerate() {
-                rules |= equal.to_bitmask() << (4 * group);
-                weight += equal & weights[group];
-            }
-            *place = Place { position, weight: weight.reduce_add() as u32, rules: rules & left };
-            left &= !rules;
-            ranked.total += place.weight;
-            ranked.count += 1;
-        }
+    pub(super) fn votes<const N: usize>(&self, rules: &Rules<N>) -> Votes<N> {
+        let valid = rules.valid();
+        let weights = core::array::from_fn(|group| (self.group(group) + i32x4::splat(1)) & valid[group]);
+        Votes::new(rules.lanes, valid, weights)
     }
 
     /// Learns which rules were right.
     #[inline(always)]
     pub(super) fn update<const N: usize>(&mut self, rules: &Rules<N>, position: i32) {
-        let (equal, valid) = (equal(rules.lanes(), position), rules.valid());
+        let (equal, valid) = (equal(rules.lanes, position), rules.valid());
         for (group, (equal, valid)) in equal.into_iter().zip(valid).enumerate() {
             let scores = self.group(group);
             let more = (i32x4::splat(ALWAYS) - scores) >> SCORE_RATE;
             let less = i32x4::splat(0) - (scores >> SCORE_RATE);
             let scores = scores + (valid & (equal & more | !equal & less));
             for (lane, score) in scores.to_array().into_iter().enumerate() {
-                self.0[(4 * group + lane) % LANES] = score as u16;
+                self.0[(4 * group + lane) % LANES] = score as Score;
             }
         }
     }
-
-    /// The rule with the highest score among some, and that score. `rules` has a bit for each.
-    #[inline(always)]
-    fn best(&self, rules: u32) -> (usize, u16) {
-        let (mut best, mut score, mut left) = (0, -1, rules);
-        while left != 0 {
-            let rule = left.trailing_zeros() as usize;
-            left &= left - 1;
-            let own = self.0.get(rule).map_or(0, |score| i32::from(*score));
-            (best, score) = if own > score { (rule, own) } else { (best, score) };
-        }
-        (best, score as u16)
-    }
-}
-
-/// A position that some rules give.
-#[derive(Debug, Clone, Copy, Default)]
-struct Place {
-    position: i32,
-    /// The sum of their scores, and of 1 for each; 0 once the position is a candidate.
-    weight: u32,
-    /// A bit for each of them.
-    rules: u32,
 }
 
 /// A position that is tried.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Candidate {
     pub(super) position: i32,
-    /// The sum of the scores of the rules that give it.
+    /// The sum of the scores of the rules that give it, and of 1 for each.
     pub(super) weight: u32,
     /// The one with the highest score.
     pub(super) rule: usize,
@@ -121,51 +86,72 @@ pub(super) struct Candidate {
     pub(super) score: u16,
 }
 
-/// The candidates that are tried in turn: the positions with the highest sums of scores, highest first. Most often the first
-/// one is right, so each is looked for when it is asked for.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Ranked {
-    places: [Place; RULES],
-    count: usize,
-    candidates: [Candidate; CANDIDATES],
-    /// How many candidates are found.
-    selected: usize,
-    /// The sum of all weights, those of positions that are not tried included.
-    pub(super) total: u32,
+/// What rules vote for: each for its position, with its score and 1. The candidates, which are tried in turn, are the positions with
+/// the highest sums, highest first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Votes<const N: usize> {
+    positions: [i32x4; N],
+    /// 0 for rules that lack what they need.
+    weights: [i32x4; N],
+    /// The weights of all rules with the same position; 0 for rules that lack what they need, and once the position is a candidate.
+    sums: [i32x4; N],
+    /// All weights together, but for those of candidates.
+    pub(super) left: u32,
 }
 
-impl Ranked {
-    /// Finds the next candidate, if there is one.
+impl<const N: usize> Votes<N> {
     #[inline(always)]
-    fn select(&mut self, scores: &Scores) -> Option<Candidate> {
-        let slot = self.candidates.get_mut(self.selected)?;
-        let places = self.places.get_mut(..self.count)?;
-        let (mut best, mut weight) = (0, 0);
-        for (at, place) in places.iter().enumerate() {
-            (best, weight) = if place.weight > weight { (at, place.weight) } else { (best, weight) };
+    fn new(positions: [i32x4; N], valid: [i32x4; N], weights: [i32x4; N]) -> Self {
+        let mut sums = [i32x4::splat(0); N];
+        let mut left = i32x4::splat(0);
+        // All are compared with all: that takes fewer steps than it takes to find out which need not be.
+        for (four, weights) in positions.into_iter().zip(weights) {
+            left += weights;
+            for (position, weight) in four.to_array().into_iter().zip(weights.to_array()) {
+                for (sum, equal) in sums.iter_mut().zip(equal(positions, position)) {
+                    *sum += equal & i32x4::splat(weight);
+                }
+            }
         }
+        let sums = core::array::from_fn(|group| sums[group] & valid[group]);
+        Self { positions, weights, sums, left: left.reduce_add() as u32 }
+    }
+
+    /// Takes the next candidate, if any position is left.
+    #[inline(always)]
+    pub(super) fn take(&mut self) -> Option<Candidate> {
+        let (first, weight) = highest(self.sums);
         if weight == 0 {
             return None;
         }
-        let place = places.get_mut(best)?;
-        place.weight = 0;
-        let (rule, score) = scores.best(place.rules);
-        *slot = Candidate { position: place.position, weight, rule, score };
-        self.selected += 1;
-        Some(*slot)
-    }
-
-    /// A candidate, if there are as many.
-    #[inline(always)]
-    pub(super) fn candidate(&mut self, rank: usize, scores: &Scores) -> Option<Candidate> {
-        if rank < self.selected { self.candidates.get(rank).copied() } else { self.select(scores) }
+        let mut flat = [0; ROOM];
+        for (flat, lanes) in flat.chunks_exact_mut(4).zip(self.positions) {
+            flat.copy_from_slice(&lanes.to_array());
+        }
+        let position = flat[first % ROOM];
+        let equal = equal(self.positions, position);
+        let (rule, best) =
+            highest(core::array::from_fn::<_, N, _>(|group| self.weights[group] & equal[group]));
+        self.sums = core::array::from_fn(|group| self.sums[group] & !equal[group]);
+        Some(Candidate { position, weight, rule, score: (best - 1) as u16 })
     }
 
     /// All candidates.
-    pub(super) fn all(&mut self, scores: &Scores) -> &[Candidate] {
-        while self.select(scores).is_some() {}
-        &self.candidates[..self.selected]
+    pub(super) fn all(mut self) -> impl Iterator<Item = Candidate> {
+        (0..CANDIDATES).map_while(move |_| self.take())
     }
+}
+
+/// The highest of some numbers below 2²⁷, the first of equal ones: its lane, and the number.
+#[inline(always)]
+fn highest<const N: usize>(numbers: [i32x4; N]) -> (usize, u32) {
+    const LAST: i32 = ROOM as i32 - 1;
+    let keys: [i32x4; N] = core::array::from_fn(|group| {
+        let first = LAST - 4 * group as i32;
+        numbers[group] << ROOM.ilog2() as i32 | i32x4::new([first, first - 1, first - 2, first - 3])
+    });
+    let key = keys.into_iter().fold(i32x4::splat(0), i32x4::max).reduce_max();
+    ((LAST - key % ROOM as i32) as usize, key as u32 / ROOM as u32)
 }
 
 #[cfg(test)]

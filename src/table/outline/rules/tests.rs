@@ -17,6 +17,12 @@ fn tracks_are_coded_from_the_ends_to_the_middles_of_gaps() {
     }
 }
 
+/// The positions that all rules give.
+fn positions(rules: &Rules<3>) -> [i32; LANES] {
+    let mut positions = rules.lanes.iter().flat_map(|lanes| lanes.to_array());
+    core::array::from_fn(|_| positions.next().expect("a lane"))
+}
+
 /// The rules of the third and of the fourth of four tracks at 13 pixels per em of 1000 units: a stem 82 units wide between two edges that are known.
 #[test]
 fn an_edge_of_a_stem_is_on_whole_pixels_or_as_far_from_them_as_the_stem_is_wide() {
@@ -33,27 +39,27 @@ fn an_edge_of_a_stem_is_on_whole_pixels_or_as_far_from_them_as_the_stem_is_wide(
         scaling: Scaling { factor, rounds_down: true },
     };
     let between = Neighbours { lower: Some(0), upper: Some(3) };
-    let lower = view.rules::<3>(1, between, None).positions;
+    let lower = positions(&view.rules::<3>(1, between, None));
     // 82 units are 68.2 of 1/64 pixel, and 332 are 276.2.
     assert_eq!([lower[0], lower[1], lower[4], lower[5]], [320, 276, 384 - 69, 276]);
     let hinted = [0, 384 - 69, 0, 640];
     view.hinted = &hinted;
-    let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
+    let upper = positions(&view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None));
     assert_eq!([upper[0], upper[5]], [384, 384]);
     // With the lower edge on whole pixels, the upper one is rounded down.
     let hinted = [0, 320, 0, 640];
     view.hinted = &hinted;
-    let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
+    let upper = positions(&view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None));
     assert_eq!((upper[5], upper[9]), (320 + 68, 640 - 263));
     // So it is below one that is not on whole pixels.
     let hinted = [0, 320, 0, 642];
     view.hinted = &hinted;
-    let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
+    let upper = positions(&view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None));
     assert_eq!(upper[9], 642 - 262);
     let hinted = [0, 320, 0, 640];
     view.hinted = &hinted;
     // Hints of TrueType round distances to the nearest.
     view.scaling.rounds_down = false;
-    let upper = view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None).positions;
+    let upper = positions(&view.rules::<3>(2, Neighbours { lower: Some(1), upper: Some(3) }, None));
     assert_eq!([upper[1], upper[4], upper[5], upper[9]], [344, 320 + 64, 320 + 68, 640 - 263]);
 }

@@ -1,9 +1,9 @@
 use proptest::prelude::*;
 
-use super::super::rules::{BEFORE, LOWER, SHARED};
+use super::super::rules::{BEFORE, LOWER, ROOM, SHARED, VALID, lanes};
 use super::*;
 
-/// What `Scores::rank` finds, from the words of the specification: position, weight, rule and score.
+/// What `Scores::votes` finds, from the words of the specification: position, weight, rule and score.
 fn naive(positions: [i32; LANES], scores: [i32; LANES], valid: usize) -> (Vec<(i32, u32, usize, u16)>, u32) {
     let mut found: Vec<(i32, u32, usize, u16)> = Vec::new();
     for rule in (0..RULES).filter(|rule| VALID[valid].lanes[*rule] != 0) {
@@ -30,18 +30,18 @@ fn room(lanes: [i32; LANES]) -> [i32; ROOM] {
 }
 
 fn check<const N: usize>(positions: [i32; LANES], scores: [i32; LANES], valid: usize, hinted: i32) {
-    let rules = Rules::<N> { positions: room(positions), valid };
-    let mut known = Scores(scores.map(|score| score as u16));
-    let mut ranked = Ranked::default();
-    known.rank(&rules, &mut ranked);
+    let rules = Rules::<N> { lanes: lanes(&room(positions)), valid };
+    let mut known = Scores(scores.map(|score| score as Score));
+    let mut votes = known.votes(&rules);
     let (expected, total) = naive(positions, scores, valid);
-    assert_eq!(ranked.total, total);
+    assert_eq!(votes.left, total);
     for (rank, expected) in expected.iter().enumerate() {
-        let Candidate { position, weight, rule, score } =
-            ranked.candidate(rank, &known).expect("a candidate");
+        let Candidate { position, weight, rule, score } = votes.take().expect("a candidate");
         assert_eq!((position, weight, rule, score), *expected, "number {rank}");
     }
-    assert!(ranked.candidate(expected.len(), &known).is_none());
+    if expected.len() < CANDIDATES {
+        assert!(votes.take().is_none());
+    }
     known.update(&rules, hinted);
     let learnt = known.0.map(i32::from);
     for rule in 0..RULES {
