@@ -146,12 +146,17 @@ pub fn code<C: Coder>(
     for (hints, corrected) in axes.iter_mut().zip(&corrected) {
         hints.is_hinted = !hints.levels.is_empty() || corrected.is_used;
     }
-    let referred = [0, 1].map(|axis| shared_moves(model, known, axis, &sources[axis], sizes.clone()));
-    let [x, y] = referred;
-    let referred = [x?, y?];
+    let mut referred = sources.each_ref().map(|sources| Referred { sources, moves: Vec::new() });
+    for ((axis, hints), referred) in axes.iter_mut().enumerate().zip(&mut referred) {
+        if C::WRITES {
+            referred.moves.resize(hints.moves.len(), 0);
+        }
+        let moves = if C::WRITES { &mut referred.moves } else { &mut hints.moves };
+        shared_moves(model, known, axis, referred.sources, sizes.clone(), moves)?;
+    }
     let is_coded = has_advances
         || corrected.iter().any(|axis| axis.is_used)
-        || sources.iter().flatten().any(|source| matches!(source, Source::Own | Source::Near(_)));
+        || sources.iter().flatten().any(|source| source.is_coded());
     let message = (Owner::Glyph, is_coded);
     sections::code(model, message, scale.sizes(), sizes.clone(), |model, section| {
         let mut tracks = [0, 1].map(|axis| Axis::new(axis, &referred[axis]));
@@ -173,7 +178,7 @@ pub fn code<C: Coder>(
                 *advance = before[0].wrapping_add(step) as i8;
                 before = [(*advance).into(), before[0]];
             }
-            for corrected in &mut corrected {
+            for corrected in corrected.iter_mut().filter(|axis| axis.is_used) {
                 corrected.code(model, size, &mut axes[corrected.axis])?;
             }
         }
@@ -194,24 +199,29 @@ fn check_moves(tracks: usize, scale: Scale) -> Result<(), Damage> {
     Err(too_large("moves of tracks", (tracks * scale.sizes()) as i32, MAX_MOVES as i32))
 }
 
-/// What tracks refer to. The model lends its memory, as nothing is coded any more of what has been coded so far.
-fn shared_moves<'s, C: Coder>(
+/// Puts the moves of what tracks refer to into `moves`: at each size those of all tracks. The model lends its memory, as nothing is
+/// coded any more of what has been coded so far.
+fn shared_moves<C: Coder>(
     model: &mut ContextModel<'_, C>,
     known: &Known<'_>,
     axis: usize,
-    sources: &'s [Source],
+    sources: &[Source],
     sizes: Range<usize>,
-) -> Result<Referred<'s>, Damage> {
-    let mut moves = alloc::vec![0; sources.len() * sizes.len()];
-    for (moves, source) in moves.chunks_exact_mut(sizes.len().max(1)).zip(sources) {
+    moves: &mut [i16],
+) -> Result<(), Damage> {
+    for (track, source) in sources.iter().enumerate() {
         if let Source::Same(number) | Source::Near(number) = *source {
             let shared =
                 model.lend(|memory| (known.shared.moves)(axis, number.into(), sizes.clone(), memory))?;
-            let shared = shared.get(..moves.len()).ok_or(malformed("refers to no shared track"))?;
-            moves.copy_from_slice(shared);
+            if shared.len() < sizes.len() {
+                return Err(malformed("refers to no shared track"));
+            }
+            for (moves, shared) in moves.chunks_exact_mut(sources.len()).zip(shared) {
+                moves[track] = shared;
+            }
         }
     }
-    Ok(Referred { sources, moves, sizes })
+    Ok(())
 }
 
 /// The context of a hinted advance width: the direction that the rightmost track's move takes the rounded width to, and the two
@@ -255,9 +265,6 @@ impl Corrections {
         size: usize,
         hints: &mut AxisHints,
     ) -> Result<(), Damage> {
-        if !self.is_used {
-            return Ok(());
-        }
         self.before.resize(self.points, 0);
         let wanted = if C::WRITES { hints.corrections_at(size) } else { &[] };
         let any = model.flag(

@@ -2,7 +2,6 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
-use core::ops::Range;
 
 use super::rules::{Neighbours, Scaling, View, coding_order, to_grid};
 use super::scores::{CANDIDATES, Candidate, Scores, Votes};
@@ -18,20 +17,9 @@ pub type Price<'q> = dyn Fn(i32, &mut dyn FnMut(u32)) + 'q;
 /// What tracks refer to.
 pub(super) struct Referred<'s> {
     pub(super) sources: &'s [Source],
-    /// For each track, the moves of the shared track at the sizes that are coded; zeros for one that refers to none.
+    /// For a writer: at each size the move of each track's shared track; 0 for one that refers to none. A reader finds them where it
+    /// puts the tracks' moves.
     pub(super) moves: Vec<i16>,
-    pub(super) sizes: Range<usize>,
-}
-
-impl Referred<'_> {
-    /// The move of the shared track at a size. None if the track refers to none.
-    fn moved(&self, track: usize, size: usize) -> Option<i16> {
-        if !matches!(self.sources[track], Source::Same(_) | Source::Near(_)) {
-            return None;
-        }
-        let at = track * self.sizes.len() + size.checked_sub(self.sizes.start)?;
-        self.moves.get(at).copied()
-    }
 }
 
 /// A hinted position that is to be written.
@@ -56,7 +44,7 @@ pub type Choose<'c> = &'c mut dyn FnMut(&Question<'_>) -> i32;
 /// The tracks of an axis while their positions are coded.
 pub(super) struct Axis<'r> {
     axis: usize,
-    /// In the order in which they are coded.
+    /// Those that are coded, in their order.
     tracks: Vec<Track>,
     /// Plain positions of all tracks, then the hinted ones at even sizes of the section, and those at odd ones.
     positions: Vec<i32>,
@@ -70,32 +58,38 @@ pub(super) struct Axis<'r> {
 struct Track {
     number: u8,
     neighbours: Neighbours,
-    scores: Scores,
+    /// Whether a shared track predicts it.
+    is_near: bool,
     /// Whether the first candidate was wrong at each of the last sizes, the last one lowest.
     misses: u8,
+    scores: Scores,
+}
+
+impl Track {
+    fn new(number: u8, neighbours: Neighbours, is_near: bool) -> Self {
+        Self { number, neighbours, is_near, misses: 0, scores: Scores::new(neighbours.kind()) }
+    }
 }
 
 impl<'r> Axis<'r> {
     /// Tracks at the first size of a section, with what each refers to.
     pub(super) fn new(axis: usize, referred: &'r Referred<'r>) -> Self {
-        // There are MAX_TRACKS at most.
-        let count = referred.sources.len() as u8;
-        let track = |(number, neighbours): (u8, Neighbours)| Track {
-            number,
-            neighbours,
-            scores: Scores::new(neighbours.kind()),
-            misses: 0,
-        };
-        Self {
-            axis,
-            referred,
-            tracks: coding_order(count).into_iter().map(track).collect(),
-            positions: vec![0; 3 * usize::from(count)],
-            coded: 0,
+        let sources = referred.sources;
+        let coded = sources.iter().filter(|source| source.is_coded()).count();
+        let mut tracks = Vec::with_capacity(coded);
+        if coded > 0 {
+            // There are MAX_TRACKS at most.
+            for (number, neighbours) in coding_order(sources.len() as u8) {
+                let source = sources[usize::from(number)];
+                if source.is_coded() {
+                    tracks.push(Track::new(number, neighbours, matches!(source, Source::Near(_))));
+                }
+            }
         }
+        Self { axis, referred, tracks, positions: vec![0; 3 * sources.len()], coded: 0 }
     }
 
-    /// Codes the moves of all tracks at a size.
+    /// Codes the moves of all tracks at a size. A reader's are those of the tracks that they refer to, before.
     pub(super) fn code<C: Coder>(
         &mut self,
         model: &mut ContextModel<'_, C>,
@@ -106,28 +100,34 @@ impl<'r> Axis<'r> {
         choose: Choose<'_>,
     ) {
         let count = self.positions.len() / 3;
+        let shared = if C::WRITES { &self.referred.moves[size * count..][..count] } else { &[] };
+        for ((moved, shared), source) in moves.iter_mut().zip(shared).zip(self.referred.sources) {
+            *moved = if source.is_coded() { *moved } else { *shared };
+        }
+        if self.tracks.is_empty() {
+            return;
+        }
         let (plain, rest) = self.positions.split_at_mut(count);
         let (even, odd) = rest.split_at_mut(count);
         let (hinted, before) = if self.coded.is_multiple_of(2) { (even, odd) } else { (odd, even) };
-        for (plain, level) in plain.iter_mut().zip(levels) {
+        for ((plain, hinted), (level, moved)) in
+            plain.iter_mut().zip(&mut *hinted).zip(levels.iter().zip(&*moves))
+        {
             *plain = mul_fixed((*level).into(), scaling.factor);
+            *hinted = plain.wrapping_add((*moved).into());
         }
         let plain = &*plain;
         let before = (self.coded > 0).then_some(&*before);
         let mut missed = 0;
         for track in &mut self.tracks {
             let number = usize::from(track.number);
-            let shared = self.referred.moved(number, size);
-            if let Source::Same(_) | Source::Still = self.referred.sources[number] {
-                moves[number] = shared.unwrap_or(0);
-            } else {
-                let view = View { levels, plain, hinted, before, scaling };
-                let at = At { axis: self.axis, size, missed, shared };
-                let (moved, is_first) = track.code(model, &view, at, moves[number], choose);
-                moves[number] = moved;
-                missed += usize::from(!is_first);
-            }
-            hinted[number] = plain[number].wrapping_add(moves[number].into());
+            let shared = track.is_near.then(|| if C::WRITES { shared[number] } else { moves[number] });
+            let view = View { levels, plain, hinted, before, scaling };
+            let at = At { axis: self.axis, size, missed, shared };
+            let (moved, is_first) = track.code(model, &view, at, moves[number], choose);
+            moves[number] = moved;
+            missed += usize::from(!is_first);
+            hinted[number] = plain[number].wrapping_add(moved.into());
         }
         self.coded += 1;
     }
@@ -311,7 +311,7 @@ pub(super) fn code_shared<C: Coder>(
     sizes: impl Iterator<Item = (usize, Scaling)>,
     moves: &mut Vec<i16>,
 ) {
-    let mut track = Track { number: 0, neighbours: Neighbours::default(), scores: Scores::new(0), misses: 0 };
+    let mut track = Track::new(0, Neighbours::default(), false);
     let mut before = None;
     for (size, scaling) in sizes {
         let plain = [mul_fixed(level.into(), scaling.factor)];

@@ -98,9 +98,9 @@ const UPPER: usize = 2;
 pub(super) const BEFORE: usize = 4;
 pub(super) const SHARED: usize = 8;
 
-/// The rules that have what they need.
-pub(super) static VALID: [Valid; 16] = {
-    let mut rows = [Valid { bits: 0, lanes: [0; ROOM] }; 16];
+/// For each rule that has what it needs, all bits.
+pub(super) static VALID: [[Mask; ROOM]; 16] = {
+    let mut rows = [[0; ROOM]; 16];
     let mut row = 0;
     while row < rows.len() {
         let mut rule = 0;
@@ -116,8 +116,7 @@ pub(super) static VALID: [Valid; 16] = {
                 _ => UPPER | BEFORE,
             };
             if row & needs == needs {
-                rows[row].bits |= 1 << rule;
-                rows[row].lanes[rule] = -1;
+                rows[row][rule] = -1;
             }
             rule += 1;
         }
@@ -126,19 +125,11 @@ pub(super) static VALID: [Valid; 16] = {
     rows
 };
 
-/// As wide as what it masks, or as few bytes as can be.
+/// All bits, or none: as wide as what it masks, or as few bytes as can be.
 #[cfg(not(feature = "small"))]
 type Mask = i32;
 #[cfg(feature = "small")]
 type Mask = i8;
-
-#[derive(Clone, Copy)]
-pub(super) struct Valid {
-    /// A bit for each rule.
-    pub(super) bits: u32,
-    /// The same as masks.
-    pub(super) lanes: [Mask; ROOM],
-}
 
 impl View<'_> {
     /// The position that each rule gives a track; `shared` is the move of the shared track that it refers to.
@@ -232,7 +223,7 @@ impl<const N: usize> Rules<N> {
     /// For each rule that has what it needs, all bits.
     #[inline(always)]
     pub(super) fn valid(&self) -> [i32x4; N] {
-        lanes(&VALID[self.valid % VALID.len()].lanes)
+        lanes(&VALID[self.valid % VALID.len()])
     }
 }
 

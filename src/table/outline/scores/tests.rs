@@ -6,7 +6,7 @@ use super::*;
 /// What `Scores::votes` finds, from the words of the specification: position, weight, rule and score.
 fn naive(positions: [i32; LANES], scores: [i32; LANES], valid: usize) -> (Vec<(i32, u32, usize, u16)>, u32) {
     let mut found: Vec<(i32, u32, usize, u16)> = Vec::new();
-    for rule in (0..RULES).filter(|rule| VALID[valid].lanes[*rule] != 0) {
+    for rule in (0..RULES).filter(|rule| VALID[valid][*rule] != 0) {
         let (weight, score) = (scores[rule] as u32 + 1, scores[rule] as u16);
         match found.iter_mut().find(|candidate| candidate.0 == positions[rule]) {
             Some(candidate) => {
@@ -45,7 +45,7 @@ fn check<const N: usize>(positions: [i32; LANES], scores: [i32; LANES], valid: u
     known.update(&rules, hinted);
     let learnt = known.0.map(i32::from);
     for rule in 0..RULES {
-        let (score, is_valid) = (scores[rule], VALID[valid].lanes[rule] != 0);
+        let (score, is_valid) = (scores[rule], VALID[valid][rule] != 0);
         let expected = match positions[rule] == hinted {
             _ if !is_valid => score,
             true => score + ((65535 - score) >> 3),
