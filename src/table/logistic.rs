@@ -17,8 +17,19 @@ pub const fn squash(stretched: i32) -> u32 {
         return 0;
     }
     let (at, share) = (((stretched >> 7) + 16) as usize, stretched & 127);
-    ((CURVE[at] * (128 - share) + CURVE[at + 1] * share + 64) >> 7) as u32
+    let (start, rise) = PIECES[at];
+    ((start + rise * share) >> 7) as u32
 }
+
+/// For each piece of the curve, its start, with a half for rounding, and what it rises by in a step: in 1/128.
+static PIECES: [(i32, i32); 32] = {
+    let (mut pieces, mut at) = ([(0, 0); 32], 0);
+    while at < 32 {
+        pieces[at] = (128 * CURVE[at] + 64, CURVE[at + 1] - CURVE[at]);
+        at += 1;
+    }
+    pieces
+};
 
 /// Its inverse, from probabilities to the logistic domain: the least number with at least that probability.
 #[cfg(not(feature = "small"))]

@@ -44,7 +44,12 @@ impl Shared<'_> {
     /// The shared tracks of a level.
     pub(super) fn of_level(&self, axis: usize, level: i16) -> Range<usize> {
         let levels = self.levels[axis];
-        levels.partition_point(|at| at.get() < level)..levels.partition_point(|at| at.get() <= level)
+        let start = levels.partition_point(|at| at.get() < level);
+        let rest = levels.get(start..).unwrap_or_default();
+        match rest.first() {
+            Some(at) if at.get() == level => start..start + rest.partition_point(|at| at.get() == level),
+            _ => start..start,
+        }
     }
 
     /// The shared tracks by the distance of their levels from one: those below, and of the same level, come before those above

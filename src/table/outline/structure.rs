@@ -1,8 +1,6 @@
 //! Coding of an axis's tracks: which levels of the outline have one, which points belong to it, and where its moves come from.
 
-use alloc::vec;
 use alloc::vec::Vec;
-use core::ops::Range;
 
 use super::shared::{Shared, Source};
 use crate::error::Damage;
@@ -16,14 +14,18 @@ use crate::table::range::Coder;
 /// The context of [`UNUSUAL`] for a level with several tracks.
 const SPLIT: usize = 5;
 
+/// Room for so many tracks is made at first.
+const USUAL_TRACKS: usize = 16;
+
 /// The points of one level.
-struct Level {
+struct Level<'k> {
     units: i16,
-    /// Where they are in the list of all points by level.
-    points: Range<u16>,
+    /// Their keys.
+    keys: &'k [u32],
     /// 2 for the lowest and the highest of the glyph, 1 for those of a contour, else 0.
-    extreme: u8,
-    on_curve: u16,
+    extreme: usize,
+    /// How many are on the curve, 2 for more.
+    on_curve: usize,
     /// Whether two of them follow each other.
     is_flat: bool,
 }
@@ -42,49 +44,68 @@ fn sort(keys: &mut [u32]) {
     }
 }
 
-/// The numbers of an outline's points by their coordinates along an axis, and its levels, ascending.
-fn levels(points: &OutlinePoints, axis: usize) -> (Vec<u16>, Vec<Level>) {
-    // Sorted as numbers: coordinates from 0 up, then points.
+/// An outline's points by their coordinates along an axis, as numbers: coordinates from 0 up, then points.
+fn sorted_keys(coordinates: &[i16]) -> Vec<u32> {
     let key = |(point, units): (usize, &i16)| u32::from(*units as u16 ^ 0x8000) << 16 | point as u32;
-    let mut keys: Vec<u32> = points.coordinates[axis].iter().enumerate().map(key).collect();
+    let mut keys: Vec<u32> = coordinates.iter().enumerate().map(key).collect();
     if cfg!(feature = "small") {
         sort(&mut keys);
     } else {
         keys.sort_unstable();
     }
-    let mut order = Vec::with_capacity(keys.len());
-    let mut levels: Vec<Level> = Vec::with_capacity(keys.len());
-    let mut level_of = vec![0u16; keys.len()];
-    for (at, key) in keys.iter().enumerate() {
-        // Outlines have 65535 points at most.
-        let at = at as u16;
-        let (units, point) = (((key >> 16) ^ 0x8000) as i16, *key as u16);
-        if levels.last().is_none_or(|level| level.units != units) {
-            levels.push(Level { units, points: at..at, extreme: 0, on_curve: 0, is_flat: false });
+    keys
+}
+
+/// The coordinate of a point, by its key.
+fn units_of(key: u32) -> i16 {
+    ((key >> 16) ^ 0x8000) as i16
+}
+
+/// The point of a key. Outlines have 65535 points at most.
+fn point_of(key: &u32) -> usize {
+    usize::from(*key as u16)
+}
+
+/// What is known of a point: bits.
+const ON_CURVE: u8 = 1;
+const EXTREME: u8 = 2;
+const FLAT: u8 = 4;
+
+/// Of each point, whether it is on the curve, whether it is as low or as high as any of its contour, and whether the next one is as
+/// high.
+fn point_bits(points: &OutlinePoints, axis: usize) -> Vec<u8> {
+    let mut bits: Vec<u8> = points.on_curve.iter().map(|on_curve| u8::from(*on_curve) * ON_CURVE).collect();
+    for contour in points.contours() {
+        let own = points.coordinates[axis].get(contour.clone()).zip(bits.get_mut(contour));
+        let Some((own @ [first, rest @ ..], bits)) = own else { continue };
+        let (low, high) = rest.iter().fold((*first, *first), |(low, high), v| (low.min(*v), high.max(*v)));
+        for ((bits, v), next) in bits.iter_mut().zip(own).zip(rest.iter().chain([first])) {
+            *bits |= u8::from(*v == low || *v == high) * EXTREME | u8::from(v == next) * FLAT;
         }
-        let number = levels.len() - 1;
-        levels[number].points.end = at + 1;
-        levels[number].on_curve += u16::from(points.on_curve[usize::from(point)]);
-        level_of[usize::from(point)] = number as u16;
-        order.push(point);
+        // A point alone is followed by itself.
+        if let ([bits], []) = (bits, rest) {
+            *bits &= !FLAT;
+        }
     }
-    for own in points.contours().filter_map(|contour| level_of.get(contour)) {
-        for extreme in [own.iter().min(), own.iter().max()].into_iter().flatten() {
-            levels[usize::from(*extreme)].extreme = 1;
+    bits
+}
+
+/// The levels of an outline, ascending.
+fn levels<'k>(keys: &'k [u32], bits: &'k [u8]) -> impl Iterator<Item = Level<'k>> {
+    let count = keys.len();
+    let mut end = 0;
+    keys.chunk_by(|a, b| units_of(*a) == units_of(*b)).map(move |keys| {
+        let (mut known, mut on_curve) = (0, 0);
+        for bits in keys.iter().map(|key| bits.get(point_of(key)).copied().unwrap_or(0)) {
+            known |= bits;
+            on_curve += usize::from(bits & ON_CURVE);
         }
-        for (a, b) in own.iter().zip(own.iter().cycle().skip(1)) {
-            if a == b && own.len() > 1 {
-                levels[usize::from(*a)].is_flat = true;
-            }
-        }
-    }
-    let last = levels.len().saturating_sub(1);
-    for at in [0, last] {
-        if let Some(level) = levels.get_mut(at) {
-            level.extreme = 2;
-        }
-    }
-    (order, levels)
+        let is_first = end == 0;
+        end += keys.len();
+        let extreme = if is_first || end == count { 2 } else { usize::from(known & EXTREME != 0) };
+        let units = units_of(keys[0]);
+        Level { units, keys, extreme, on_curve: on_curve.min(2), is_flat: known & FLAT != 0 }
+    })
 }
 
 /// Codes the tracks of an axis and their sources.
@@ -98,14 +119,12 @@ pub(super) fn code<C: Coder>(
     shared: &Shared<'_>,
 ) -> Result<(), Damage> {
     hints.track_of.resize(points.len(), UNTOUCHED);
-    let (order, levels) = levels(points, axis);
-    let room = if C::WRITES { 0 } else { levels.len() };
+    let (keys, bits) = (sorted_keys(&points.coordinates[axis]), point_bits(points, axis));
+    let room = if C::WRITES { 0 } else { USUAL_TRACKS.min(keys.len()) };
     let mut tracks =
         Tracks { last: i32::from(i16::MIN), before: [false; 2], levels: Vec::with_capacity(room) };
-    for (at, level) in levels.iter().enumerate() {
-        let points = usize::from(level.points.start)..level.points.end.into();
-        let points = order.get(points).unwrap_or_default();
-        tracks.code(model, (at, level), points, scale.units_per_em(), hints)?;
+    for (at, level) in levels(&keys, &bits).enumerate() {
+        tracks.code(model, at, &level, scale.units_per_em(), hints)?;
         model.check()?;
     }
     if !C::WRITES {
@@ -138,34 +157,37 @@ impl Tracks {
     fn code<C: Coder>(
         &mut self,
         model: &mut ContextModel<'_, C>,
-        (at, level): (usize, &Level),
-        points: &[u16],
+        at: usize,
+        level: &Level<'_>,
         units_per_em: u16,
         hints: &mut AxisHints,
     ) -> Result<(), Damage> {
         let first = self.levels.len();
-        let thousandths = |units: i32| (units.max(0) * 1000 / i32::from(units_per_em)).min(10_000);
-        let units = i32::from(level.units);
-        let is_near = class(thousandths(units - self.last), [10, 25, 60, 120, 250]);
+        let Level { units, keys, extreme, on_curve, is_flat } = *level;
+        let units = i32::from(units);
+        let points = || keys.iter().map(point_of);
+        // Whether the last track is so many thousandths of an em below, rounded down.
+        let limits = [10, 25, 60, 120, 250].map(|limit| limit * i32::from(units_per_em));
+        let is_near = class((units - self.last) * 1000, limits);
         let contexts = [
-            usize::from(level.extreme) * 8 + (points.len().min(4) - 1) * 2 + usize::from(level.is_flat),
-            is_near * 3 + usize::from(level.on_curve.min(2)),
+            extreme * 8 + (keys.len().min(4) - 1) * 2 + usize::from(is_flat),
+            is_near * 3 + on_curve,
             usize::from(self.before[0]) * 12 + usize::from(self.before[1]) * 6 + at.min(5),
         ];
-        let own = |point: &u16| hints.track_of[usize::from(*point)];
-        let count = if C::WRITES { subtracks(points.iter().map(own), first) } else { 0 };
+        let own = |point: usize| hints.track_of[point];
+        let count = if C::WRITES { subtracks(points().map(own), first) } else { 0 };
         let has_track = model.flag(TRACK, contexts, count > 0);
         self.before = [has_track, self.before[0]];
         if !has_track {
             return Ok(());
         }
         self.last = units;
-        let is_whole = count == 1 && points.iter().all(|point| usize::from(own(point)) == first);
+        let is_whole = count == 1 && points().all(|point| usize::from(own(point)) == first);
         let mut count = 1;
         if model.flag(UNUSUAL, [SPLIT, 0, 0], !is_whole) {
             count = 0;
-            for (k, point) in points.iter().enumerate() {
-                let track = &mut hints.track_of[usize::from(*point)];
+            for (k, point) in points().enumerate() {
+                let track = &mut hints.track_of[point];
                 let sub = if *track == UNTOUCHED { 0 } else { usize::from(*track).wrapping_sub(first) + 1 };
                 let sub = model.positive(SUBTRACK, [k.min(1), 0, 0], sub as u32 + 1) as usize - 1;
                 if sub > count + 1 {
@@ -175,7 +197,7 @@ impl Tracks {
                 *track = if sub == 0 { UNTOUCHED } else { (first + sub - 1).min(MAX_TRACKS) as u8 };
             }
         } else {
-            points.iter().for_each(|point| hints.track_of[usize::from(*point)] = first.min(MAX_TRACKS) as u8);
+            points().for_each(|point| hints.track_of[point] = first.min(MAX_TRACKS) as u8);
         }
         self.levels.resize(first + count, level.units);
         if self.levels.len() > MAX_TRACKS {
