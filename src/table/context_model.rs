@@ -112,12 +112,10 @@ impl<'p, C: Coder> ContextModel<'p, C> {
 
     #[inline]
     fn update(&mut self, slot: usize, bit: bool) {
-        let probability = &mut self.slots[slot];
-        if bit {
-            *probability += (u16::MAX - *probability) >> RATE;
-        } else {
-            *probability -= *probability >> RATE;
-        }
+        // Towards 1 a probability moves as its complement does towards 0. No branch: nobody could guess it.
+        let complement = u16::from(bit).wrapping_neg();
+        let probability = self.slots[slot] ^ complement;
+        self.slots[slot] = (probability - (probability >> RATE)) ^ complement;
     }
 
     /// Refuses to go on behind the end of the bytes.

@@ -6,6 +6,7 @@
 //! to stay short.
 
 use alloc::vec::Vec;
+use core::hint::select_unpredictable;
 
 /// The probability 1.
 pub const ONE: u32 = 1 << 12;
@@ -73,11 +74,8 @@ impl Interval {
     }
 
     fn narrow(&mut self, split: u32, bit: bool) {
-        if bit {
-            self.high = split;
-        } else {
-            self.low = split + 1;
-        }
+        self.high = select_unpredictable(bit, split, self.high);
+        self.low = select_unpredictable(bit, self.low, split.wrapping_add(1));
     }
 
     /// The leading byte, if both ends share it; the interval then goes on with the bytes behind.

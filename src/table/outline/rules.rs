@@ -179,9 +179,10 @@ impl View<'_> {
     }
 
     /// The position of a track, interpolated between two others.
-    fn between(&self, ends: [usize; 2], track: usize) -> i32 {
-        let ends = ends.map(|k| (i32::from(self.levels[k]), self.plain[k], self.hinted[k]));
-        interpolated(ends, self.levels[track].into(), self.plain[track])
+    #[inline]
+    fn between(&self, [a, b]: [usize; 2], track: usize) -> i32 {
+        let end = |track: usize| (i32::from(self.levels[track]), self.plain[track], self.hinted[track]);
+        interpolated([end(a), end(b)], self.levels[track].into(), self.plain[track])
     }
 
     /// The rules that differ for PostScript's hints: they put one edge of a stem on whole pixels, where the tracks around it lead it,

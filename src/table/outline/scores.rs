@@ -105,9 +105,11 @@ impl<const N: usize> Votes<N> {
         let mut sums = [i32x4::splat(0); N];
         let mut left = i32x4::splat(0);
         // All are compared with all: that takes fewer steps than it takes to find out which need not be.
-        for (four, weights) in positions.into_iter().zip(weights) {
+        for (group, (four, weights)) in positions.into_iter().zip(weights).enumerate() {
             left += weights;
-            for (position, weight) in four.to_array().into_iter().zip(weights.to_array()) {
+            // The last rule needs a track above, and the last lane has none.
+            let count = if group > 0 && group + 1 == N { 3 } else { 4 };
+            for (position, weight) in four.to_array().into_iter().zip(weights.to_array()).take(count) {
                 for (sum, equal) in sums.iter_mut().zip(equal(positions, position)) {
                     *sum += equal & i32x4::splat(weight);
                 }
