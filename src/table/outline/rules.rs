@@ -173,7 +173,7 @@ impl View<'_> {
             at[7] = self.between([a, b], track);
         }
         if self.scaling.rounds_down {
-            at = self.of_stems(track, [lower, upper], at);
+            return Rules { lanes: lanes(&self.of_stems(track, [lower, upper], at)), valid };
         }
         Rules { lanes: lanes(&at), valid }
     }
