@@ -113,7 +113,10 @@ impl<'a> OutlineIndex<'a> {
         let (lengths, messages) = block.split_at_checked((messages - first).min(BLOCK) * width)?;
         let length = |bytes: &[u8]| bytes.iter().fold(0, |length, byte| length << 8 | usize::from(*byte));
         let (before, rest) = lengths.split_at_checked((number - first) * width)?;
-        let start = before.chunks_exact(width).map(length).sum::<usize>();
+        let start = match width {
+            1 => before.iter().map(|length| usize::from(*length)).sum(),
+            _ => before.chunks_exact(width).map(length).sum::<usize>(),
+        };
         messages.get(start..start + length(rest.get(..width)?))
     }
 
