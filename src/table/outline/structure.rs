@@ -254,3 +254,6 @@ fn code_source<C: Coder>(
         _ => Ok(Source::Still),
     }
 }
+
+#[cfg(test)]
+mod tests;
