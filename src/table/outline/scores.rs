@@ -2,7 +2,7 @@
 
 use wide::i32x4;
 
-use super::rules::{LANES, ROOM, RULES, Rules};
+use super::rules::{LANES, ROOM, RULES, Rules, lanes};
 
 /// The most candidates that are tried before a position is coded as a number.
 pub(super) const CANDIDATES: usize = 2;
@@ -93,7 +93,8 @@ pub(super) struct Votes<const N: usize> {
     positions: [i32x4; N],
     /// 0 for rules that lack what they need.
     weights: [i32x4; N],
-    /// The weights of all rules with the same position; 0 for rules that lack what they need, and once the position is a candidate.
+    /// The weights of all rules with the same position, at least for the first of them; 0 for rules that lack what they need, and once
+    /// the position is a candidate.
     sums: [i32x4; N],
     /// All weights together, but for those of candidates.
     pub(super) left: u32,
@@ -102,20 +103,13 @@ pub(super) struct Votes<const N: usize> {
 impl<const N: usize> Votes<N> {
     #[inline(always)]
     fn new(positions: [i32x4; N], valid: [i32x4; N], weights: [i32x4; N]) -> Self {
-        let mut sums = [i32x4::splat(0); N];
-        let mut left = i32x4::splat(0);
-        // All are compared with all: that takes fewer steps than it takes to find out which need not be.
-        for (group, (four, weights)) in positions.into_iter().zip(weights).enumerate() {
-            left += weights;
-            // The last rule needs a track above, and the last lane has none.
-            let count = if group > 0 && group + 1 == N { 3 } else { 4 };
-            for (position, weight) in four.to_array().into_iter().zip(weights.to_array()).take(count) {
-                for (sum, equal) in sums.iter_mut().zip(equal(positions, position)) {
-                    *sum += equal & i32x4::splat(weight);
-                }
-            }
-        }
-        let sums = core::array::from_fn(|group| sums[group] & valid[group]);
+        let left = weights.into_iter().fold(i32x4::splat(0), |left, weights| left + weights);
+        let sums = if cfg!(feature = "small") {
+            sums_of_first(positions, weights)
+        } else {
+            let sums = sums_of_all(positions, weights);
+            core::array::from_fn(|group| sums[group] & valid[group])
+        };
         Self { positions, weights, sums, left: left.reduce_add() as u32 }
     }
 
@@ -126,11 +120,7 @@ impl<const N: usize> Votes<N> {
         if weight == 0 {
             return None;
         }
-        let mut flat = [0; ROOM];
-        for (flat, lanes) in flat.chunks_exact_mut(4).zip(self.positions) {
-            flat.copy_from_slice(&lanes.to_array());
-        }
-        let position = flat[first % ROOM];
+        let position = flat(self.positions)[first % ROOM];
         let equal = equal(self.positions, position);
         let (rule, best) =
             highest(core::array::from_fn::<_, N, _>(|group| self.weights[group] & equal[group]));
@@ -144,9 +134,53 @@ impl<const N: usize> Votes<N> {
     }
 }
 
-/// The highest of some numbers below 2²⁷, the first of equal ones: its lane, and the number.
+/// For each rule, the weights of all rules with the same position. All are compared with all: that takes less time than it takes to find
+/// out which need not be.
+#[inline(always)]
+fn sums_of_all<const N: usize>(positions: [i32x4; N], weights: [i32x4; N]) -> [i32x4; N] {
+    let mut sums = [i32x4::splat(0); N];
+    for (group, (four, weights)) in positions.into_iter().zip(weights).enumerate() {
+        // The last rule needs a track above, and the last lane has none.
+        let count = if group > 0 && group + 1 == N { 3 } else { 4 };
+        for (position, weight) in four.to_array().into_iter().zip(weights.to_array()).take(count) {
+            for (sum, equal) in sums.iter_mut().zip(equal(positions, position)) {
+                *sum += equal & i32x4::splat(weight);
+            }
+        }
+    }
+    sums
+}
+
+/// The same for the first rule of each position, and 0 for the others: less code, and fewer steps where there is no SIMD.
+fn sums_of_first<const N: usize>(positions: [i32x4; N], weights: [i32x4; N]) -> [i32x4; N] {
+    let (positions, weights) = (flat(positions), flat(weights));
+    let mut sums = [0; ROOM];
+    for (at, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0) {
+        let is_same = |first: &usize| weights[*first] > 0 && positions[*first] == positions[at];
+        sums[(0..at).find(is_same).unwrap_or(at)] += weight;
+    }
+    lanes(&sums)
+}
+
+/// Numbers one by one.
+#[inline(always)]
+fn flat<const N: usize>(lanes: [i32x4; N]) -> [i32; ROOM] {
+    let mut flat = [0; ROOM];
+    for (flat, lanes) in flat.chunks_exact_mut(4).zip(lanes) {
+        flat.copy_from_slice(&lanes.to_array());
+    }
+    flat
+}
+
+/// The highest of some numbers below 2²⁷ that are not negative, the first of equal ones: its lane, and the number.
 #[inline(always)]
 fn highest<const N: usize>(numbers: [i32x4; N]) -> (usize, u32) {
+    if cfg!(feature = "small") {
+        let numbers = flat(numbers).into_iter().enumerate();
+        let highest =
+            numbers.fold((0, 0), |best, (at, number)| if number > best.1 { (at, number) } else { best });
+        return (highest.0, highest.1 as u32);
+    }
     const LAST: i32 = ROOM as i32 - 1;
     let keys: [i32x4; N] = core::array::from_fn(|group| {
         let first = LAST - 4 * group as i32;

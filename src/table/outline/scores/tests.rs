@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 
-use super::super::rules::{BEFORE, LOWER, ROOM, SHARED, VALID, lanes};
+use super::super::rules::{BEFORE, LOWER, SHARED, VALID};
 use super::*;
 
 /// What `Scores::votes` finds, from the words of the specification: position, weight, rule and score.
