@@ -45,9 +45,13 @@ impl Scores {
     }
 
     /// Those of four rules.
+    #[cfg_attr(
+        not(feature = "small"),
+        expect(clippy::useless_conversion, reason = "devices keep fewer bytes")
+    )]
     #[inline(always)]
     fn group(&self, group: usize) -> i32x4 {
-        i32x4::new([0, 1, 2, 3].map(|lane| self.0[(4 * group + lane) % LANES].into()))
+        i32x4::new([0, 1, 2, 3].map(|lane| i32::from(self.0[(4 * group + lane) % LANES])))
     }
 
     /// The votes of the rules that have what they need.

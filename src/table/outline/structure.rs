@@ -80,7 +80,8 @@ fn point_bits(points: &OutlinePoints, axis: usize) -> Vec<u8> {
         let Some((own @ [first, rest @ ..], bits)) = own else { continue };
         let (low, high) = rest.iter().fold((*first, *first), |(low, high), v| (low.min(*v), high.max(*v)));
         for ((bits, v), next) in bits.iter_mut().zip(own).zip(rest.iter().chain([first])) {
-            *bits |= u8::from(*v == low || *v == high) * EXTREME | u8::from(v == next) * FLAT;
+            *bits |= if *v == low || *v == high { EXTREME } else { 0 };
+            *bits |= if v == next { FLAT } else { 0 };
         }
         // A point alone is followed by itself.
         if let ([bits], []) = (bits, rest) {
