@@ -1,14 +1,11 @@
 //! Character maps as people's fonts have them: which subtable answers, whatever others there are.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use nfr::Font;
 use read_fonts::types::{GlyphId, Tag};
 use read_fonts::{FontRef, model};
 use write_fonts::FontBuilder;
 
-use samples::bytes;
+use crate::samples::bytes;
 
 /// A subtable: platform, encoding, and its bytes.
 type Subtable = (u16, u16, Vec<u8>);

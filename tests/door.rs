@@ -1,13 +1,10 @@
 //! What an application uses: ways of drawing, limits, metrics, and what is an error.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use std::sync::Arc;
 
 use nfr::{Bitmap, DrawOptions, Error, Font, Limits, MissingModel, Placement, Rasterizer, Target};
 
-use samples::{bytes, font, table, without_models};
+use crate::samples::{bytes, font, table, without_models};
 
 /// Whole and fractional sizes, within the trained range and beyond it.
 const PPEM: [f32; 12] = [0.5, 3.0, 7.5, 8.0, 10.9, 11.0, 15.5, 31.9, 50.25, 64.0, 68.0, 256.0];
@@ -293,8 +290,8 @@ fn the_font_tells_what_it_was_made_for() {
     let font = font("serif");
     assert_eq!((font.ppem_range(), font.target(), font.units_per_em()), ((10, 40), Target::Smooth, 2048));
     assert!(font.outlines_match() && !font.outlines_dropped());
-    assert!(samples::font("sans").outlines_dropped());
-    assert_eq!(samples::font("mono").target(), Target::Mono);
+    assert!(crate::samples::font("sans").outlines_dropped());
+    assert_eq!(crate::samples::font("mono").target(), Target::Mono);
     let all: Vec<u32> = font.modelled_glyphs().collect();
     assert!(all.is_sorted() && all.len() == font.modelled_glyphs().len());
     assert!(all.iter().all(|glyph| font.has_model(*glyph) && font.model_len(*glyph).unwrap() > 0));

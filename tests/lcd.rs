@@ -1,15 +1,12 @@
 //! Coverage of subpixels, against grey bitmaps and a filter that is written out. crates/nfr-convert/tests/lcd.rs compares with
 //! FreeType.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use nfr::{
     Bitmap, DrawOptions, Error, Lcd, LcdBitmap, LcdFilter, Limits, MissingModel, Placement, Rasterizer,
     SubpixelOrder,
 };
 
-use samples::{bytes, font, without_models};
+use crate::samples::{bytes, font, without_models};
 
 /// Outlines, fields with hints in y and in both axes.
 const FONTS: [&str; 4] = ["outline", "outline-mono", "sans", "mono"];

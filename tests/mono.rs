@@ -1,15 +1,12 @@
 //! Drawing in black and white: against a slow twin, and drop-out control on outlines made for it. crates/nfr-convert/tests/mono.rs
 //! compares with FreeType.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use nfr::internals::HintedOutline;
 use nfr::internals::table::Dropout;
 use nfr::{DrawOptions, Error, Font, Limits, MissingModel, MonoBitmap, Rasterizer};
 use proptest::prelude::*;
 
-use samples::{bytes, font, without_models};
+use crate::samples::{bytes, font, without_models};
 
 /// A size at which positions between scan lines have 1/4096 pixel, and one at which they have 1/64.
 const PPEM: [f32; 2] = [12.0, 24.0];

@@ -1,11 +1,8 @@
 //! Opening a font: what is none is refused, and says why.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use nfr::{Error, Font, Rasterizer};
 
-use samples::{bytes, table, with_table};
+use crate::samples::{bytes, table, with_table};
 
 #[test]
 fn what_is_no_converted_font_is_refused_by_its_cause() {

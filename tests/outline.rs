@@ -1,7 +1,4 @@
 //! Plain outlines, which are drawn for glyphs without models, against a twin that only counts samples.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use nfr::{Bitmap, DrawOptions, Font, MissingModel, Rasterizer};
 use read_fonts::model;
@@ -9,7 +6,7 @@ use read_fonts::model::glyph::outline::{DrawMemory, UnscaledOutlineSink};
 use read_fonts::tables::glyf::PointFlags;
 use read_fonts::types::GlyphId;
 
-use samples::{bytes, without_models};
+use crate::samples::{bytes, without_models};
 
 /// Samples of a pixel along each axis.
 const SAMPLES: i32 = 32;

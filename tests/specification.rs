@@ -1,5 +1,4 @@
 //! The worked example of `spec/nfrt.md`.
-#![allow(clippy::unwrap_used)]
 
 use nfr::internals::model::gridfit::{AxisWarp, Scale, Weights};
 use nfr::internals::table::codec::{decode, encode};

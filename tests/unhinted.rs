@@ -1,11 +1,8 @@
 //! Drawing without hints, whatever models a font has.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use nfr::{Bitmap, DrawOptions, Font, MissingModel, Rasterizer};
 
-use samples::{bytes, font, without_models};
+use crate::samples::{bytes, font, without_models};
 
 /// At trained sizes, between them and beyond them.
 const PPEM: [f32; 7] = [3.0, 8.0, 11.0, 16.4, 31.9, 64.0, 200.0];

@@ -1,17 +1,11 @@
 //! The renderer draws what is written in `spec/vectors`, and a difference does not go unnoticed. If whole bitmaps differ,
 //! a picture shows them; with `REPLACE=1` in the environment, the vectors are written again, and the test still fails.
-#![allow(clippy::unwrap_used)]
-
-#[path = "samples/picture.rs"]
-mod picture;
-#[path = "../examples/vectors/suite.rs"]
-mod suite;
 
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use suite::{BITMAPS, FONTS, File, check, compare, draw, write};
+use crate::suite::{BITMAPS, FONTS, File, check, compare, draw, write};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/spec/vectors");
 
@@ -47,7 +41,7 @@ fn show(written: &str) -> String {
     if pairs.is_empty() {
         return "no whole bitmap differs".to_owned();
     }
-    let path = picture::write("vectors.png", &pairs);
+    let path = crate::picture::write("vectors.png", &pairs);
     format!("expected | difference | actual: {}", path.display())
 }
 

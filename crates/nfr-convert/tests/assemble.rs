@@ -1,5 +1,4 @@
 //! The output font against its input: what has to stay stays, and the hint programs are gone.
-#![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeSet;
 use std::rc::Rc;

@@ -1,11 +1,9 @@
 //! Fonts without hints learn from skrifa's autohinter, which is FreeType's.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
+use crate::samples::{FONTS, Silent, ascii, font, gid, gids};
 use freetype::face::LoadFlag;
 use nfr::Target;
 use nfr_convert::assemble::assemble;
@@ -14,7 +12,6 @@ use nfr_convert::ppem::PpemList;
 use nfr_convert::teacher::Teacher;
 use nfr_convert::{Error, Hinter, Options, convert};
 use read_fonts::FontRef;
-use samples::{FONTS, Silent, ascii, font, gid, gids};
 
 /// The largest error over printable ASCII at 8–64 ppem.
 const MAE: f64 = 0.0006;

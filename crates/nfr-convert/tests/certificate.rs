@@ -1,17 +1,13 @@
 //! What a conversion says of its result, and whether a check finds out if it is not so.
 
-#![allow(clippy::unwrap_used)]
-
-mod samples;
-
 use std::collections::BTreeMap;
 
+use crate::samples::{FONTS, Silent, font, gid, gids, table, with_changed_outline, with_tables};
 use nfr::internals::table::{Certificate, CertifiedErrors, Dropout};
 use nfr::{Font, Target};
 use nfr_convert::compare::certificate::CertificateCheck;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::{Options, Quality, Shape, convert};
-use samples::{FONTS, Silent, font, gid, gids, table, with_changed_outline, with_tables};
 
 /// Curves, diagonals, an accent and a blank.
 const TEXT: &str = "aR%é ";

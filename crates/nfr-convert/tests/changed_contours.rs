@@ -1,16 +1,12 @@
 //! Glyphs whose contours hinting changes: their hint programs put control points on the curve or take points off it.
 
-#![allow(clippy::unwrap_used)]
-
-mod samples;
-
+use crate::samples::{FONTS, Silent, Warnings, font, gid, gids, with_flipped_points};
 use nfr::{Font, Rasterizer, Target};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::teacher::Teacher;
 use nfr_convert::{Conversion, Error, Options, Quality, Shape, convert};
 use read_fonts::FontRef;
-use samples::{FONTS, Silent, Warnings, font, gid, gids, with_flipped_points};
 
 /// Liberation Sans with an 'e' whose points 3 to 6 are taken off the curve below 12 ppem.
 fn flipped() -> Vec<u8> {

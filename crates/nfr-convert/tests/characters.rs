@@ -1,7 +1,4 @@
 //! What shapers make of characters, against harfrust: variation selectors, split vowel signs, signs without a letter.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use std::collections::BTreeSet;
 
@@ -9,7 +6,7 @@ use nfr_convert::closure::{LayoutFeatures, close};
 use nfr_convert::select::Selection;
 use read_fonts::FontRef;
 
-use samples::{FONTS, font, with_tables};
+use crate::samples::{FONTS, font, with_tables};
 
 /// Characters of a test font, and their glyphs.
 const CHARACTERS: [(char, u32); 16] = [

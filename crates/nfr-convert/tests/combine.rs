@@ -1,14 +1,10 @@
 //! Adding models to a converted font.
 
-#![allow(clippy::unwrap_used)]
-
-mod samples;
-
+use crate::samples::{FONTS, Silent, font, gid, gids, table};
 use nfr::{Font, Rasterizer, Target};
 use nfr_convert::combine::{compact, merge};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::{Options, Shape, convert};
-use samples::{FONTS, Silent, font, gid, gids, table};
 
 fn options(data: &[u8], text: &str) -> Options {
     Options { gids: gids(data, text), jobs: 2, ..Options::default() }

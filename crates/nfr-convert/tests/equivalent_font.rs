@@ -1,20 +1,15 @@
 //! Where skrifa and FreeType follow other rules, the teacher follows FreeType's: `docs/upstream.md` has the rules and the smallest
 //! font of each.
-#![allow(clippy::unwrap_used)]
-
-#[path = "samples/programs.rs"]
-mod programs;
-mod samples;
 
 use std::rc::Rc;
 
+use crate::programs::{box_glyph, composite_glyph, font_of};
+use crate::samples::Warnings;
 use freetype::face::LoadFlag;
 use nfr::Target;
 use nfr_convert::teacher::Teacher;
 use nfr_convert::{Error, Options, convert};
-use programs::{box_glyph, composite_glyph, font_of};
 use read_fonts::FontRef;
-use samples::Warnings;
 
 const PPEM: u16 = 12;
 const TARGETS: [(Target, LoadFlag); 2] =

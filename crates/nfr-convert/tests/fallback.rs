@@ -1,14 +1,11 @@
 //! A glyph without a model, drawn from its unhinted outline, against zeno.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use nfr::{DrawOptions, Font, MissingModel, Rasterizer};
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::teacher::Teacher;
 use read_fonts::FontRef;
 
-use samples::{FONTS, converted, font, gid};
+use crate::samples::{FONTS, converted, font, gid};
 
 /// The mean absolute difference of a pixel's coverage over all bitmaps of a font. zeno cuts curves into fewer pieces:
 /// single pixels of thin curves are off by some 16 levels, as they are between zeno and FreeType (tests/teacher.rs).

@@ -1,21 +1,16 @@
 //! Coverage of subpixels against FreeType's, from fonts that are converted for the target `lcd`.
-#![allow(clippy::unwrap_used)]
-
-#[path = "samples/freetype_bitmap.rs"]
-mod freetype_bitmap;
-mod samples;
 
 use std::rc::Rc;
 use std::sync::LazyLock;
 
+use crate::freetype_bitmap::rendered;
 use freetype::face::LoadFlag;
 use freetype::{Face, Matrix, RenderMode, Vector};
-use freetype_bitmap::rendered;
 use nfr::{Bitmap, Font, Lcd, LcdBitmap, LcdFilter, Placement, Rasterizer, SubpixelOrder, Target};
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::{Options, convert};
 
-use samples::{FONTS, Silent, ascii, font, gid, gids};
+use crate::samples::{FONTS, Silent, ascii, font, gid, gids};
 
 /// The mean absolute difference of a channel's coverage, of all glyphs and sizes. The models of default quality differ by
 /// 0.0002 from the hints at these sizes; the rest is what the rasterisers differ by.

@@ -1,7 +1,4 @@
 //! Options and fonts that cannot be converted are refused before any training.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -14,7 +11,7 @@ use write_fonts::FontBuilder;
 use write_fonts::from_obj::ToOwnedTable;
 use write_fonts::tables::glyf::{GlyfLocaBuilder, Glyph as NewGlyph, SimpleGlyph};
 
-use samples::{font, gids};
+use crate::samples::{font, gids};
 
 // OpenType 1.9, "head".
 const UNITS_PER_EM_AT: usize = 18;

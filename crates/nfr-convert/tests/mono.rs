@@ -1,22 +1,17 @@
 //! Black and white against FreeType's.
-#![allow(clippy::unwrap_used)]
-
-#[path = "samples/freetype_mono.rs"]
-mod freetype_mono;
-mod samples;
 
 use std::rc::Rc;
 
+use crate::freetype_mono::{monochrome, moved, rasterised};
 use freetype::face::LoadFlag;
 use freetype::{Face, Library};
-use freetype_mono::{monochrome, moved, rasterised};
 use nfr::internals::table::Dropout;
 use nfr::internals::{HintedOutline, decode};
 use nfr::{DrawOptions, Font, MissingModel, MonoBitmap, Rasterizer, Target};
 use nfr_convert::{Options, Quality, convert};
 use proptest::prelude::*;
 
-use samples::{FONTS, Silent, ascii, font, gid, gids};
+use crate::samples::{FONTS, Silent, ascii, font, gid, gids};
 
 /// Letters with accents, which are composed, beside printable ASCII and the blank.
 const COMPOSED: &str = " \u{E9}\u{C5}\u{F1}\u{FC}\u{E7}\u{D8}";

@@ -1,9 +1,6 @@
 //! Outline models of real fonts: how near they are, what they take, and what happens to outlines that were changed.
 
-#![allow(clippy::unwrap_used)]
-
-mod samples;
-
+use crate::samples::{Silent, font, gids, with_changed_outline, with_whole_sizes};
 use nfr::{Font, Rasterizer, Target};
 use nfr_convert::combine::compact;
 use nfr_convert::compare::fonts::FontPair;
@@ -12,7 +9,6 @@ use nfr_convert::{Conversion, Options, Quality, convert};
 use proptest::prelude::*;
 use read_fonts::types::Tag;
 use read_fonts::{FontRef, TableProvider};
-use samples::{Silent, font, gids, with_changed_outline, with_whole_sizes};
 use skrifa::MetadataProvider;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::pen::ControlBoundsPen;

@@ -1,7 +1,4 @@
 //! Fonts with PostScript outlines are converted as those with TrueType outlines are.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use nfr::{Font, Rasterizer, Target};
 use nfr_convert::compare::fonts::FontPair;
@@ -10,7 +7,7 @@ use nfr_convert::teacher::Teacher;
 use nfr_convert::{Conversion, Error, Hinter, Options, Quality, convert};
 use read_fonts::{FontRef, TableProvider};
 
-use samples::{Warnings, gid, gids, table, with_tables};
+use crate::samples::{Warnings, gid, gids, table, with_tables};
 
 /// The error that outline models of printable ASCII have at most, over all sizes, at the default quality: `figures` says 0.00036.
 const MAX_MAE: f64 = 0.0005;

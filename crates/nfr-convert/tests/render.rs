@@ -1,7 +1,4 @@
 //! The bitmaps of converted fonts, against the teacher and between sizes.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use std::sync::LazyLock;
 
@@ -11,7 +8,7 @@ use nfr_convert::compare::metrics::Sums;
 use nfr_convert::teacher::Teacher;
 use read_fonts::FontRef;
 
-use samples::{converted, font, gid, with_whole_sizes};
+use crate::samples::{converted, font, gid, with_whole_sizes};
 
 /// Glyphs with round, straight, slanted and separate parts, and a blank one.
 const TEXT: &str = "agRiw%. ";
@@ -95,7 +92,7 @@ fn a_fractional_size_is_as_crisp_in_y() {
     let mean = |more: f32| {
         let sharpness = sizes.clone().flat_map(|ppem| letters().map(move |gid| (gid, ppem)));
         let all: Vec<f32> = sharpness
-            .filter(|(gid, _)| *gid != samples::gid(&ORIGINAL, ' '))
+            .filter(|(gid, _)| *gid != crate::samples::gid(&ORIGINAL, ' '))
             .map(|(gid, ppem)| grey(&glyph(&font, gid).render(ppem + more).unwrap()))
             .collect();
         all.iter().sum::<f32>() / all.len() as f32
@@ -199,7 +196,7 @@ fn a_composed_glyph_between_pixels_is_the_hinted_outline_moved() {
         let mut sums = Sums::default();
         for ppem in [9u16, 12, 16, 20, 24] {
             let at = teacher.at(ppem).unwrap();
-            for gid in samples::gids(&ORIGINAL, "áàâéèêóòôúùû") {
+            for gid in crate::samples::gids(&ORIGINAL, "áàâéèêóòôúùû") {
                 let mut outline = at.hinted(gid).unwrap();
                 outline.translate(offset);
                 let options = set(ppem.into(), offset);

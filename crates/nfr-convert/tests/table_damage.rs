@@ -1,7 +1,4 @@
 //! Damaged tables and files are errors, never panics.
-#![allow(clippy::unwrap_used)]
-
-mod samples;
 
 use std::sync::LazyLock;
 
@@ -13,7 +10,7 @@ use read_fonts::FontRef;
 use read_fonts::types::Tag;
 use write_fonts::FontBuilder;
 
-use samples::{converted, font};
+use crate::samples::{converted, font};
 
 /// A converted font with a few models.
 static CONVERTED: LazyLock<Vec<u8>> =
@@ -24,7 +21,7 @@ static SLIM: LazyLock<Vec<u8>> = LazyLock::new(|| slim(&CONVERTED));
 
 /// A font with so many models that the table counts them in several blocks.
 static BLOCKS: LazyLock<Vec<u8>> =
-    LazyLock::new(|| slim(&converted(&font("LiberationSans-Regular"), &samples::ascii(), 0).font));
+    LazyLock::new(|| slim(&converted(&font("LiberationSans-Regular"), &crate::samples::ascii(), 0).font));
 
 fn slim(data: &[u8]) -> Vec<u8> {
     let original = FontRef::new(data).unwrap();
@@ -112,7 +109,7 @@ fn damaged(data: &[u8], from: usize, to: usize, damage: &[(prop::sample::Index, 
 }
 
 proptest! {
-    // A longer run: PROPTEST_CASES=1000000 cargo test --release --test table_damage
+    // A longer run: PROPTEST_CASES=1000000 cargo test --release -p nfr-convert --test all table_damage::
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]

@@ -1,16 +1,11 @@
 //! The teacher, skrifa with zeno, against FreeType: its bitmaps are FreeType's. And it never teaches anything
 //! but the font's own hints: a font that has none is refused.
-#![allow(clippy::unwrap_used)]
-
-#[path = "samples/freetype_bitmap.rs"]
-mod freetype_bitmap;
-mod samples;
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
+use crate::freetype_bitmap::freetype_bitmap;
 use freetype::face::LoadFlag;
-use freetype_bitmap::freetype_bitmap;
 use nfr::{Bitmap, Target};
 use nfr_convert::Error;
 use nfr_convert::assemble::assemble;
@@ -19,7 +14,7 @@ use read_fonts::FontRef;
 use read_fonts::types::Tag;
 use write_fonts::FontBuilder;
 
-use samples::{FONTS, ascii, font, gid, max_difference};
+use crate::samples::{FONTS, ascii, font, gid, max_difference};
 
 /// The rasterisers cut curves into straight pieces at different places. Where thin curves share a pixel, that adds
 /// up, to 13 levels in the '@' at 13 ppem; `bad16` begins where this bound ends.
@@ -154,7 +149,7 @@ fn a_size_at_which_prep_switches_hinting_off_says_so_and_shows_the_plain_outline
 fn a_font_that_switches_hinting_off_at_all_sizes_teaches_nothing() {
     let data = altered(&[(b"prep", vec![0xB1, 1, 1, 0x8E])], &[]);
     let options = nfr_convert::Options { gids: vec![gid(&data, 'g')], ppem: 12..=13, ..Default::default() };
-    let error = nfr_convert::convert(&data, &options, &samples::Silent).unwrap_err();
+    let error = nfr_convert::convert(&data, &options, &crate::samples::Silent).unwrap_err();
     assert!(matches!(&error, Error::Unsupported(text) if text.contains("at all of these sizes")), "{error}");
 }
 

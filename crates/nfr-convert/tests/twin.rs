@@ -1,11 +1,6 @@
 //! A naive twin of the renderer, in double precision. The field's zero level is interpolated on a lattice as in marching
 //! squares, but nothing is traced, simplified or cut: every lattice cell's polygon is drawn on its own, in thin vertical
 //! strips, whose ends are moved by the warp and the deformation.
-#![allow(clippy::unwrap_used)]
-
-#[path = "samples/model_twin.rs"]
-mod model_twin;
-mod samples;
 
 use nfr::internals::Scratch;
 use nfr::internals::model::gridfit::{
@@ -18,8 +13,8 @@ use nfr_convert::teacher::Teacher;
 use nfr_convert::training_samples::GlyphSamples;
 use read_fonts::FontRef;
 
-use model_twin::{ModelTwin, spline};
-use samples::{FONTS, ascii, font, gid};
+use crate::model_twin::{ModelTwin, spline};
+use crate::samples::{FONTS, ascii, font, gid};
 
 /// Lattice steps in a cell of the field, along each axis.
 const LATTICE: usize = 4;

@@ -1,15 +1,12 @@
 //! Hints that move points sideways in smooth text, and hints without which a glyph looks different.
-#![allow(clippy::unwrap_used)]
 
-mod samples;
-
+use crate::samples::{FONTS, Silent, Warnings, ascii, font, gid, gids, with_program, with_tables};
 use nfr::{Font, Rasterizer, Target};
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::metrics::Sums;
 use nfr_convert::teacher::Teacher;
 use nfr_convert::{Error, Options, Quality, Shape, convert};
 use read_fonts::FontRef;
-use samples::{FONTS, Silent, Warnings, ascii, font, gid, gids, with_program, with_tables};
 
 /// OpenType 1.9, "TrueType instruction set": PUSHB[1] 4 3, INSTCTRL leaves backward compatibility mode, in which smooth hinting does
 /// not move points in x.

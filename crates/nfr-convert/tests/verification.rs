@@ -1,14 +1,10 @@
 //! Verifying converted fonts: what is equal is found equal, and whatever is not is found.
 
-#![allow(clippy::unwrap_used)]
-
-mod samples;
-
+use crate::samples::{FONTS, Silent, font, gid, gids, table, with_changed_outline, with_tables};
 use nfr::Target;
 use nfr_convert::compare::fonts::FontPair;
 use nfr_convert::compare::verification::{NoPoints, Verification};
 use nfr_convert::{Conversion, Error, Options, Quality, Shape, convert};
-use samples::{FONTS, Silent, font, gid, gids, table, with_changed_outline, with_tables};
 
 /// Letters, a ring of curves, a letter composed of others, and a blank.
 const TEXT: &str = "aegR%8éúü ";

@@ -1,5 +1,4 @@
 //! Web fonts that ask for too much, and damage of all kinds: an error each time, and no panic.
-#![allow(clippy::unwrap_used)]
 
 use std::time::{Duration, Instant};
 

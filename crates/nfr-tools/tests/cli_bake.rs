@@ -1,15 +1,11 @@
 //! `nfr bake` as a person calls it; what it writes is read by FreeType, read-fonts, image, serde_json and a C compiler, and compared with
 //! what the library draws.
-#![allow(clippy::unwrap_used)]
-
-mod baked;
-mod common;
 
 use std::fs;
 use std::process::Command;
 
-use baked::{Drawn, Expected, Strike, TEXT, freetype_strike, neural};
-use common::{Directory, nfr, nfr_convert, sans_with};
+use crate::baked::{Drawn, Expected, Strike, TEXT, freetype_strike, neural};
+use crate::common::{Directory, nfr, nfr_convert, sans_with};
 use image::GenericImageView;
 use read_fonts::tables::bitmap::{BitmapContent, BitmapMetrics};
 use read_fonts::types::Tag;
@@ -63,7 +59,7 @@ fn read_fonts_strike(data: &[u8], ppem: u16) -> Strike {
             let BitmapContent::Data(_, bytes) = bitmap.content else { panic!("a composite") };
             let width = usize::from(metrics.width);
             let origin = (metrics.bearing_x.get().into(), metrics.bearing_y.get().into());
-            let levels = baked::unpacked(bytes, size.bit_depth(), width * usize::from(metrics.height));
+            let levels = crate::baked::unpacked(bytes, size.bit_depth(), width * usize::from(metrics.height));
             (gid, Drawn::new(levels, width, origin, metrics.advance.into()))
         })
         .collect()
@@ -208,7 +204,8 @@ fn without_a_selection_a_glyph_stands_for_all_of_its_characters() {
     let output = directory.name("both.c");
     let run = nfr(&["bake", &font, &output, "--ppem", "12"]).succeeds();
     assert!(run.stderr.contains("both lacks 2 glyphs"), "{}", run.stderr);
-    let read: Strike = printed(&directory, "both", false).lines().skip(1).map(baked::printed_glyph).collect();
+    let read: Strike =
+        printed(&directory, "both", false).lines().skip(1).map(crate::baked::printed_glyph).collect();
     assert_eq!(read, Expected::new(&font).characters(12, 4, "A\u{391}"));
     assert_eq!(fs::read_to_string(output).unwrap().matches("/* U+").count(), 1);
 }
@@ -299,7 +296,7 @@ fn a_c_program_finds_the_librarys_bitmaps_in_a_font_for_lvgl() {
             // Ascent and descent are 0.905 and 0.212 em; at 12 ppem the bar reaches as far down as the line.
             let head = if ppem == 12 { "14 3" } else { "17 3" };
             assert_eq!(lines.next().unwrap(), format!("{head} {bits}"));
-            let read: Strike = lines.map(baked::printed_glyph).collect();
+            let read: Strike = lines.map(crate::baked::printed_glyph).collect();
             assert_eq!(
                 read,
                 Expected::new(neural()).characters(ppem, bits, TEXT),
@@ -316,6 +313,7 @@ fn a_font_that_is_too_large_for_lvgls_small_fields_says_what_it_needs() {
     let run = nfr(&["bake", neural(), &output, "--ppem", "300", "--text", "AŒ"]).succeeds();
     assert!(run.stderr.contains("large needs LV_FONT_FMT_TXT_LARGE"), "{}", run.stderr);
     assert!(run.stderr.contains("300 ppem: the models were trained for 8-64 ppem"), "{}", run.stderr);
-    let read: Strike = printed(&directory, "large", true).lines().skip(1).map(baked::printed_glyph).collect();
+    let read: Strike =
+        printed(&directory, "large", true).lines().skip(1).map(crate::baked::printed_glyph).collect();
     assert_eq!(read, Expected::new(neural()).characters(300, 4, "AŒ"));
 }

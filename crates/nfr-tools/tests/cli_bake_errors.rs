@@ -1,13 +1,9 @@
 //! What `nfr bake` refuses, what it warns of, and that nothing is written then.
-#![allow(clippy::unwrap_used)]
-
-mod baked;
-mod common;
 
 use std::fs;
 
-use baked::neural;
-use common::{Directory, SANS, nfr, nfr_convert};
+use crate::baked::neural;
+use crate::common::{Directory, SANS, nfr, nfr_convert};
 use serde_json::Value;
 
 #[test]

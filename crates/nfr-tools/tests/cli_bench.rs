@@ -1,12 +1,8 @@
 //! `nfr bench` as a person calls it. Nothing here looks at how long anything took.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::sync::OnceLock;
 
-use common::{Directory, SANS, collection, nfr, nfr_convert, sans};
+use crate::common::{Directory, SANS, collection, nfr, nfr_convert, sans};
 use serde_json::Value;
 
 /// Every field of a line but `ppem`.
@@ -36,13 +32,13 @@ fn neural() -> &'static str {
 }
 
 /// Times the drawing for one round.
-fn bench(original: &str, more: &[&str]) -> common::Run {
+fn bench(original: &str, more: &[&str]) -> crate::common::Run {
     nfr(&[&["bench", original, neural(), "--rounds", "1"], more].concat())
 }
 
 /// Asserts a line for each of these sizes, with positive times, and gives the lines.
 #[track_caller]
-fn assert_lines(run: common::Run, sizes: &[u64]) {
+fn assert_lines(run: crate::common::Run, sizes: &[u64]) {
     let lines: Vec<Value> =
         run.succeeds().stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let ppem: Vec<u64> = lines.iter().map(|line| line["ppem"].as_u64().unwrap()).collect();

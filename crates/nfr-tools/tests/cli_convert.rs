@@ -1,16 +1,12 @@
 //! A font is converted with the tools and used with them, as a person would.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::sync::OnceLock;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
-use common::{Directory, SANS, collection, nfr, nfr_convert, sans};
+use crate::common::{Directory, SANS, collection, nfr, nfr_convert, sans};
 use nfr::Font;
 use nfr::internals::decode;
 

@@ -1,14 +1,9 @@
 //! Every error message of the tools and of the converter: provoked as a person would, it says what is wrong, where, and what to do.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-mod errors;
-
 use std::path::Path;
 
-use common::{Directory, FONTS, Run, SANS, collection, nfr, nfr_convert, sans, sans_with};
-use errors::{ELSEWHERE, messages, sources};
+use crate::common::{Directory, FONTS, Run, SANS, collection, nfr, nfr_convert, sans, sans_with};
+use crate::errors::{ELSEWHERE, messages, sources};
 use read_fonts::FontRef;
 use read_fonts::types::Tag;
 

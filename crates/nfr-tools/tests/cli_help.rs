@@ -1,14 +1,10 @@
 //! What users read before they run a command: help, completions, man pages.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::path::Path;
 use std::process::Command;
 
+use crate::common::{Directory, SANS, nfr, nfr_convert};
 use assert_cmd::cargo::cargo_bin;
-use common::{Directory, SANS, nfr, nfr_convert};
 
 /// The commands that a help begins with.
 fn examples(help: &str) -> Vec<String> {

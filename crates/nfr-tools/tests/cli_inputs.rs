@@ -1,12 +1,8 @@
 //! Inputs other than a hinted font file: collections, web fonts, fonts without hints, and fonts with bitmaps.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::collections::BTreeSet;
 
-use common::{Directory, SANS, collection_of, nfr, nfr_convert, sans, sans_with};
+use crate::common::{Directory, SANS, collection_of, nfr, nfr_convert, sans, sans_with};
 use nfr_convert::assemble::assemble;
 use read_fonts::FontRef;
 use serde_json::Value;
@@ -37,7 +33,7 @@ fn unhinted() -> Vec<u8> {
     builder.build()
 }
 
-fn convert(input: &str, output: &str, args: &[&str]) -> common::Run {
+fn convert(input: &str, output: &str, args: &[&str]) -> crate::common::Run {
     nfr_convert(&[&QUICK[..], args, &[input, output]].concat())
 }
 

@@ -1,17 +1,14 @@
 //! Ctrl-C ends a conversion at any moment, and what was there before is untouched.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::common::{Directory, SANS, nfr_convert};
 use assert_cmd::cargo::cargo_bin;
-use common::{Directory, SANS, nfr_convert};
 
 /// More glyphs than are ready within the longest wait.
 const ARGS: [&str; 7] = ["--gids", "0-2600", "--no-closure", "--ppem", "8-64", "--quality", "75"];

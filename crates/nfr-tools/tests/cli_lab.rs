@@ -1,10 +1,6 @@
 //! `nfr lab` as a person calls it: every command, for an epoch or two.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{Directory, FONTS, SANS, nfr};
+use crate::common::{Directory, FONTS, SANS, nfr};
 
 const ROBOTO: [&str; 3] = [
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/Roboto_500Medium.ttf"),
@@ -13,7 +9,7 @@ const ROBOTO: [&str; 3] = [
 ];
 const LABEL: &str = "SMALL SCALE, not the published one";
 
-fn lab(args: &[&str], more: &[&str]) -> common::Run {
+fn lab(args: &[&str], more: &[&str]) -> crate::common::Run {
     nfr(&[&["lab"], args, more].concat())
 }
 

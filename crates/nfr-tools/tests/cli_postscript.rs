@@ -1,14 +1,10 @@
 //! A font with PostScript outlines is converted and used with the tools, as a person would.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use read_fonts::FontRef;
 use read_fonts::types::Tag;
 use write_fonts::FontBuilder;
 
-use common::{Directory, nfr, nfr_convert};
+use crate::common::{Directory, nfr, nfr_convert};
 
 const CANTARELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fonts/Cantarell-Regular.otf");
 

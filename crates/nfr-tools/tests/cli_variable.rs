@@ -1,14 +1,10 @@
 //! Variable fonts: which instance is asked for, and how fontTools makes it. Where the Python of `NFR_PYTHON`, or else `python3`, has no
 //! fontTools, the advice is tested instead.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{Directory, Run, SANS, collection_of, nfr, nfr_convert};
+use crate::common::{Directory, Run, SANS, collection_of, nfr, nfr_convert};
 use read_fonts::FontRef;
 use write_fonts::FontBuilder;
 

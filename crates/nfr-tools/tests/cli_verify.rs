@@ -1,16 +1,11 @@
 //! `nfr verify` as a person calls it, and what `nfr-convert --quality 100` says where it is not exact.
-#![allow(clippy::unwrap_used)]
-
-mod common;
-#[path = "../../nfr-convert/tests/samples/mod.rs"]
-mod samples;
 
 use std::sync::OnceLock;
 
 use serde_json::Value;
 
-use common::{Directory, SANS, collection, font, nfr, nfr_convert, sans};
-use samples::{gid, with_changed_outline, with_flipped_points};
+use crate::common::{Directory, SANS, collection, font, nfr, nfr_convert, sans};
+use crate::samples::{gid, with_changed_outline, with_flipped_points};
 
 const TEXT: &str = "aRé%";
 
@@ -129,17 +124,17 @@ fn a_certificate_that_does_not_hold_exits_with_1_and_one_is_asked_for() {
     let directory = Directory::new();
     let default = std::fs::read(&converted().default).unwrap();
     // The hints are others.
-    let mut cvt = samples::table(&sans(), b"cvt ");
+    let mut cvt = crate::samples::table(&sans(), b"cvt ");
     cvt.iter_mut().skip(1).step_by(2).for_each(|byte| *byte = byte.wrapping_add(90));
-    let original = directory.write("original.ttf", &samples::with_tables(&sans(), &[(b"cvt ", cvt)]));
+    let original = directory.write("original.ttf", &crate::samples::with_tables(&sans(), &[(b"cvt ", cvt)]));
     let run = nfr(&["verify", &original, &converted().default]);
     assert_eq!(run.code, 1);
     assert!(run.stderr.starts_with("error: the certificate does not hold: the errors of "), "{}", run.stderr);
     assert!(run.stdout.contains("certificate   does not hold for ") && run.stdout.contains(", max "));
     // Bit 3 of the flags.
-    let mut nfrt = samples::table(&default, b"Nfrt");
+    let mut nfrt = crate::samples::table(&default, b"Nfrt");
     nfrt[5] &= !8;
-    let without = directory.write("without.ttf", &samples::with_tables(&default, &[(b"Nfrt", nfrt)]));
+    let without = directory.write("without.ttf", &crate::samples::with_tables(&default, &[(b"Nfrt", nfrt)]));
     let run = nfr(&["verify", SANS, &without]);
     assert_eq!(run.code, 1);
     assert!(run.stderr.contains("no certificate") && run.stderr.contains("--at-most"), "{}", run.stderr);

@@ -1,10 +1,5 @@
 //! What matters for whole fonts: glyphs that share models, interrupted conversions, outlines left out, and sizes
 //! left out. Training is cut short or left out: the models are rough, but whole.
-#![allow(clippy::unwrap_used)]
-
-mod common;
-#[path = "../../nfr-convert/tests/samples/mod.rs"]
-mod samples;
 
 use std::collections::BTreeSet;
 
@@ -21,8 +16,8 @@ use nfr_convert::{Conversion, Options, Shape, convert, resume};
 use read_fonts::types::GlyphId;
 use read_fonts::{FontRef, TableProvider};
 
-use common::{Directory, SANS, font, nfr_convert, sans};
-use samples::{Silent, gid, gids};
+use crate::common::{Directory, SANS, font, nfr_convert, sans};
+use crate::samples::{Silent, gid, gids};
 
 /// Capitals and small letters with accents above and below, and all that they are made of but the accents.
 const ACCENTED: &str = "AEaeoucÁÀÂÄÅáàâäåéèêëóòôöúùûüç";

@@ -1,5 +1,5 @@
 //! Microseconds a glyph by the Rust interface, the best of many rounds over ASCII at 16 pixels per em, as `tests/c/speed.c` measures
-//! the C interface: `cargo run --release -p nfr-capi --example speed -- FONT`.
+//! the C interface: `cargo run --release -p nfr-capi --example rust_speed -- FONT`.
 
 #![allow(clippy::print_stdout)]
 
@@ -8,7 +8,7 @@ use std::time::Instant;
 use nfr::{Font, Rasterizer};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path = std::env::args().nth(1).ok_or("usage: speed FONT")?;
+    let path = std::env::args().nth(1).ok_or("usage: rust_speed FONT")?;
     let font = Font::new(std::fs::read(path)?)?;
     let mut rasterizer = Rasterizer::new(&font);
     let glyphs: Vec<u32> = (' '..='~').filter_map(|c| font.glyph_for_char(c)).collect();
