@@ -1,4 +1,5 @@
 //! The test fonts are the ones that `fonts/README.md` describes.
+#![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -9,6 +9,7 @@ mod scores;
 mod sections;
 mod shared;
 mod structure;
+mod votes;
 
 pub use codec::*;
 pub use index::{OutlineIndex, pack};

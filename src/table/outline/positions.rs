@@ -4,8 +4,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::rules::{Neighbours, Scaling, View, coding_order, to_grid};
-use super::scores::{CANDIDATES, Candidate, Scores, Votes};
+use super::scores::Scores;
 use super::shared::Source;
+use super::votes::{CANDIDATES, Candidate, Votes};
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
 use crate::table::elements::{HIT, MISS_FRACTION, MISS_PIXELS};
@@ -176,7 +177,7 @@ impl Track {
         let number = usize::from(self.number);
         let plain = view.plain[number];
         let rules = view.rules::<N>(number, self.neighbours, at.shared);
-        let votes = self.scores.votes(&rules);
+        let votes = Votes::new(&rules, &self.scores);
         let kind = self.neighbours.kind();
         let state = State { misses: usize::from(self.misses & 3), missed: at.missed, kind };
         let moved = if C::WRITES {

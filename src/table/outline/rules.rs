@@ -226,6 +226,21 @@ impl<const N: usize> Rules<N> {
     pub(super) fn valid(&self) -> [i32x4; N] {
         lanes(&VALID[self.valid % VALID.len()])
     }
+
+    /// The rules that have what they need, with their positions.
+    #[cfg(feature = "small")]
+    pub(super) fn each(&self) -> impl Iterator<Item = (usize, i32)> {
+        let valid = VALID[self.valid % VALID.len()];
+        let rules = (0..RULES).filter(move |rule| valid[*rule] != 0);
+        rules.map(|rule| (rule, self.lanes[rule / 4 % N].to_array()[rule % 4]))
+    }
+}
+
+/// For each lane with this number, all bits.
+#[inline(always)]
+pub(super) fn equal<const N: usize>(lanes: [i32x4; N], number: i32) -> [i32x4; N] {
+    let number = i32x4::splat(number);
+    lanes.map(|lanes| lanes.simd_eq(number))
 }
 
 #[inline(always)]
