@@ -1,14 +1,13 @@
 //! The device that networks are trained on: the processor, or a GPU.
 
-use std::cell::Cell;
 use std::fmt;
-use std::panic::{self, AssertUnwindSafe, catch_unwind};
-use std::sync::Once;
 
 use burn::tensor::Device;
 
+#[cfg(feature = "gpu-wgsl")]
+use super::guard::guarded;
 use super::samples::PixelLayout;
-use super::tensors::device_failed;
+#[cfg(feature = "gpu-wgsl")]
 use nfr_convert::error::Error;
 
 /// A device, and what is known about it.
@@ -93,60 +92,5 @@ impl fmt::Display for Accelerator {
             AcceleratorKind::Software => f.write_str(", a software adapter"),
             AcceleratorKind::Processor | AcceleratorKind::Gpu => Ok(()),
         }
-    }
-}
-
-/// Does work on a device. A device that fails (it is lost, or its memory is full) makes burn panic: that becomes an error.
-///
-/// # Errors
-///
-/// `Device` after a panic; those of the work.
-pub fn guarded<R>(work: impl FnOnce() -> Result<R, Error>) -> Result<R, Error> {
-    silence_guarded();
-    let outer = GUARDED.replace(true);
-    // After a failure nothing of what the work used is used again.
-    let done = catch_unwind(AssertUnwindSafe(work));
-    GUARDED.set(outer);
-    done.unwrap_or_else(|panic| {
-        let text = panic.downcast_ref::<String>().map(String::as_str);
-        let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no reason is given");
-        Err(device_failed(text))
-    })
-}
-
-thread_local! {
-    /// Whether a panic of this thread becomes an error.
-    static GUARDED: Cell<bool> = const { Cell::new(false) };
-}
-
-/// Leaves panics that become errors out of what the program prints.
-fn silence_guarded() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let others = panic::take_hook();
-        panic::set_hook(Box::new(move |info| {
-            if !GUARDED.get() {
-                others(info);
-            }
-        }));
-    });
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_device_that_fails_is_an_error_of_one_line() {
-        let lost = guarded(|| -> Result<(), Error> { panic!("device {} lost\nat line 7", 3) });
-        let text = lost.unwrap_err().to_string();
-        assert!(
-            text.contains("(device 3 lost)") && text.contains("--resume") && text.lines().count() == 1,
-            "{text}"
-        );
-        assert_eq!(guarded(|| Ok(7)), Ok(7));
-        let full = guarded(|| Err::<(), _>(Error::Io("the disk is full".into())));
-        assert_eq!(full, Err(Error::Io("the disk is full".into())));
     }
 }

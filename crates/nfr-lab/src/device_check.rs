@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use burn::tensor::Device;
 
-use super::accelerator::{Accelerator, guarded};
+use super::accelerator::Accelerator;
+use super::guard::guarded;
 use super::implicit::Implicit;
 use super::lockstep::{Lockstep, LockstepSamples};
 use super::masked::Masked;

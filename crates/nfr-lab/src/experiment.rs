@@ -7,7 +7,8 @@ use std::time::Instant;
 
 use burn::tensor::Device;
 
-use super::accelerator::{Accelerator, guarded};
+use super::accelerator::Accelerator;
+use super::guard::guarded;
 use super::samples::TrainingSample;
 use super::settings::Settings;
 use super::train::checkpoint::Checkpoint;

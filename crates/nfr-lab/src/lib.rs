@@ -17,6 +17,7 @@ pub mod family;
 mod files;
 pub mod gridfit_interpolation;
 mod groups;
+pub mod guard;
 pub mod implicit;
 pub mod interpolation;
 pub mod lockstep;

@@ -1,9 +1,9 @@
 //! One model of one glyph of one font: the paper's experiments on memorising.
 
-use super::accelerator::guarded;
 use super::dataset::{CharGlyph, Dataset};
 use super::evaluation::{ClassAccuracy, Evaluation};
 use super::experiment::Experiment;
+use super::guard::guarded;
 use super::implicit::{Implicit, ImplicitConfig};
 use super::lockstep::{can_join, train_in_lockstep};
 use super::network_training::{TrainedNetwork, TrainingRun, train_implicit, train_masked};

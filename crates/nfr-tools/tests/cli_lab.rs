@@ -230,6 +230,62 @@ fn a_queue_stops_goes_on_is_divided_and_merged() {
         .fails_with(&["masked/LiberationSerif-Regular/u006c/result", "damaged"]);
 }
 
+/// A limit to the size of files, in blocks of the shell's, stands for a full disk: writing fails in the middle of a file.
+#[cfg(unix)]
+#[test]
+fn a_queue_stops_at_a_full_disk_and_goes_on_when_there_is_room() {
+    let directory = Directory::new();
+    let queue = |out: &str, blocks: &str| {
+        let shell = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", &shell, "sh"]).arg(assert_cmd::cargo::cargo_bin("nfr"));
+        command.args([
+            "lab",
+            "report",
+            "--fonts",
+            FONTS,
+            "--text",
+            "l",
+            "--part",
+            "l",
+            "--networks",
+            "masked",
+        ]);
+        command.args([
+            "--epochs",
+            "2",
+            "--boxes",
+            "20,24",
+            "--quiet",
+            "--resume",
+            "--train-only",
+            "--out",
+            out,
+        ]);
+        let output = command.output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let out = directory.name("out");
+    let place = "masked/LiberationSerif-Regular/u006c";
+    for blocks in ["0", "20"] {
+        let (code, printed, error) = queue(&out, blocks);
+        assert_eq!((code, printed.as_str(), error.lines().count()), (Some(1), "", 1), "{error}");
+        for part in ["error: cannot write ", &format!("{place}/checkpoint ("), "make room there", "--resume"]
+        {
+            assert!(error.contains(part), "{part:?} is not in {error}");
+        }
+        let left = std::fs::read_dir(directory.path(&format!("out/{place}"))).unwrap().count();
+        assert_eq!(left, 0, "a part of a file is left");
+    }
+    let (code, printed, error) = queue(&out, "unlimited");
+    assert_eq!(code, Some(0), "{error}");
+    assert!(printed.contains("3 of 3 trainings are finished\n"), "{printed}");
+}
+
 #[test]
 fn a_queue_of_one_kind_of_networks_trains_several_in_lockstep() {
     let directory = Directory::new();
