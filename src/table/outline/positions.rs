@@ -4,9 +4,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::rules::{Neighbours, Scaling, View, coding_order, to_grid};
+use super::rules::{Neighbours, ROOM, Scaling, View, coding_order, to_grid};
 use super::scores::{Candidate, Ranked, Scores};
 use super::shared::Source;
+use super::shifts::{Reference, Shifts};
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
 use crate::table::elements::{HIT, MISS_FRACTION, MISS_PIXELS};
@@ -73,6 +74,7 @@ struct Track {
     number: u8,
     neighbours: Neighbours,
     scores: Scores,
+    shifts: Shifts,
     /// Whether the first candidate was wrong at each of the last sizes, the last one lowest.
     misses: u8,
 }
@@ -82,16 +84,13 @@ impl<'r> Axis<'r> {
     pub(super) fn new(axis: usize, referred: &'r Referred<'r>) -> Self {
         // There are MAX_TRACKS at most.
         let count = referred.sources.len() as u8;
-        let track = |(number, neighbours): (u8, Neighbours)| Track {
-            number,
-            neighbours,
-            scores: Scores::new(neighbours.kind()),
-            misses: 0,
-        };
         Self {
             axis,
             referred,
-            tracks: coding_order(count).into_iter().map(track).collect(),
+            tracks: coding_order(count)
+                .into_iter()
+                .map(|(number, neighbours)| Track::new(number, neighbours))
+                .collect(),
             positions: vec![0; 3 * usize::from(count)],
             coded: 0,
             ranked: Ranked::default(),
@@ -149,6 +148,11 @@ struct At {
 }
 
 impl Track {
+    fn new(number: u8, neighbours: Neighbours) -> Self {
+        let scores = Scores::new(neighbours.kind());
+        Self { number, neighbours, scores, shifts: Shifts::new(), misses: 0 }
+    }
+
     /// Codes the move at a size; also says whether the position is the first candidate's.
     fn code<C: Coder>(
         &mut self,
@@ -182,9 +186,14 @@ impl Track {
         let plain = view.plain[number];
         let rules = view.rules::<N>(number, self.neighbours, at.shared);
         self.scores.rank(&rules, ranked);
-        let mut candidates = Candidates { ranked, scores: &self.scores };
-        let kind = self.neighbours.kind();
-        let state = State { misses: usize::from(self.misses & 3), missed: at.missed, kind };
+        let mut candidates = Candidates {
+            ranked,
+            scores: &self.scores,
+            shifts: &self.shifts,
+            positions: &rules.positions,
+            valid: rules.valid,
+        };
+        let state = State { misses: usize::from(self.misses & 3), missed: at.missed };
         let moved = if C::WRITES {
             asked(model, &mut candidates, state, choose, (at.axis, number, at.size), plain, moved)
         } else {
@@ -195,7 +204,11 @@ impl Track {
         self.misses = self.misses << 1 | u8::from(!is_first);
         // Damaged bytes may give any position.
         let moved = position.wrapping_sub(plain) as i16;
-        self.scores.update(&rules, plain.wrapping_add(moved.into()));
+        let position = plain.wrapping_add(moved.into());
+        self.scores.update(&rules, position);
+        if !is_first {
+            self.shifts.update(&rules, position);
+        }
         (moved, is_first)
     }
 }
@@ -204,12 +217,21 @@ impl Track {
 struct Candidates<'s> {
     ranked: &'s mut Ranked,
     scores: &'s Scores,
+    shifts: &'s Shifts,
+    /// What the rules give, and which have what they need.
+    positions: &'s [i32; ROOM],
+    valid: usize,
 }
 
 impl Candidates<'_> {
     #[inline(always)]
     fn get(&mut self, rank: usize) -> Option<Candidate> {
         self.ranked.candidate(rank, self.scores)
+    }
+
+    /// What a position that none of them is counts from.
+    fn reference(&self) -> Reference {
+        self.shifts.reference(self.positions, self.valid)
     }
 }
 
@@ -220,8 +242,6 @@ struct State {
     misses: usize,
     /// How many tracks were missed at this size.
     missed: usize,
-    /// The kind of neighbours.
-    kind: usize,
 }
 
 fn asked<C: Coder>(
@@ -233,11 +253,12 @@ fn asked<C: Coder>(
     plain: i32,
     wanted: i16,
 ) -> i16 {
-    let total = candidates.ranked.total;
+    let (total, reference) = (candidates.ranked.total, candidates.reference());
     let candidates = candidates.ranked.all(candidates.scores);
-    let moves: Vec<i32> = candidates.iter().map(|c| c.position.wrapping_sub(plain)).collect();
+    let tried = candidates.iter().map(|c| c.position).chain([reference.position]);
+    let moves: Vec<i32> = tried.map(|position| position.wrapping_sub(plain)).collect();
     let price = |moved: i32, visit: &mut dyn FnMut(u32)| {
-        price(model, candidates, total, state, plain.wrapping_add(moved), visit);
+        price(model, (candidates, reference), total, state, plain.wrapping_add(moved), visit);
     };
     let chosen = choose(&Question { axis, track, size, wanted, candidates: &moves, price: &price });
     chosen.clamp(i16::MIN.into(), i16::MAX.into()) as i16
@@ -259,18 +280,20 @@ fn hit_contexts(candidate: &Candidate, rank: usize, left: u32, state: State) -> 
     ]
 }
 
-fn miss_pixels_context(state: State) -> [usize; 3] {
-    [state.kind * 3 + state.missed.min(2), 0, 0]
+fn miss_pixels_context(reference: Reference, state: State) -> [usize; 3] {
+    [reference.context * 3 + state.missed.min(2), 0, 0]
 }
 
-fn miss_fraction_context(first: i32, pixels: i32, state: State) -> [usize; 3] {
-    [state.kind * 4 + usize::from(to_grid(first) == first) * 2 + usize::from(pixels != 0), 0, 0]
+fn miss_fraction_context(reference: Reference, pixels: i32) -> [usize; 3] {
+    let is_whole = to_grid(reference.position) == reference.position;
+    [reference.context * 4 + usize::from(is_whole) * 2 + usize::from(pixels != 0), 0, 0]
 }
 
-/// The distance from the first candidate in whole pixels, and the rest.
-fn split(position: i32, first: i32) -> (i32, i32) {
-    let pixels = to_grid(position.wrapping_sub(first)) >> 6;
-    (pixels, position.wrapping_sub(first).wrapping_sub(pixels << 6))
+/// The distance from the reference in whole pixels, and the rest.
+fn split(position: i32, reference: Reference) -> (i32, i32) {
+    let apart = position.wrapping_sub(reference.position);
+    let pixels = to_grid(apart) >> 6;
+    (pixels, apart.wrapping_sub(pixels << 6))
 }
 
 /// Codes a position; also says whether it is the first candidate's.
@@ -281,27 +304,25 @@ fn code_position<C: Coder>(
     state: State,
     position: i32,
 ) -> (i32, bool) {
-    let (mut left, mut rank, mut first) = (candidates.ranked.total, 0, 0);
+    let (mut left, mut rank) = (candidates.ranked.total, 0);
     while let Some(candidate) = candidates.get(rank) {
         if model.flag(HIT, hit_contexts(&candidate, rank, left, state), candidate.position == position) {
             return (candidate.position, rank == 0);
         }
-        if rank == 0 {
-            first = candidate.position;
-        }
         left -= candidate.weight;
         rank += 1;
     }
-    let (pixels, fraction) = split(position, first);
-    let pixels = model.signed(MISS_PIXELS, miss_pixels_context(state), pixels);
-    let fraction = model.signed(MISS_FRACTION, miss_fraction_context(first, pixels, state), fraction);
-    (first.wrapping_add(pixels.wrapping_shl(6)).wrapping_add(fraction), false)
+    let reference = candidates.reference();
+    let (pixels, fraction) = split(position, reference);
+    let pixels = model.signed(MISS_PIXELS, miss_pixels_context(reference, state), pixels);
+    let fraction = model.signed(MISS_FRACTION, miss_fraction_context(reference, pixels), fraction);
+    (reference.position.wrapping_add(pixels.wrapping_shl(6)).wrapping_add(fraction), false)
 }
 
 /// Gives the probabilities of the bins of a position.
 fn price<C: Coder>(
     model: &ContextModel<'_, C>,
-    candidates: &[Candidate],
+    (candidates, reference): (&[Candidate], Reference),
     total: u32,
     state: State,
     position: i32,
@@ -317,10 +338,9 @@ fn price<C: Coder>(
         visit((1 << 12) - probability);
         left -= candidate.weight;
     }
-    let first = candidates.first().map_or(0, |candidate| candidate.position);
-    let (pixels, fraction) = split(position, first);
-    model.visit_signed(MISS_PIXELS, miss_pixels_context(state), pixels, visit);
-    model.visit_signed(MISS_FRACTION, miss_fraction_context(first, pixels, state), fraction, visit);
+    let (pixels, fraction) = split(position, reference);
+    model.visit_signed(MISS_PIXELS, miss_pixels_context(reference, state), pixels, visit);
+    model.visit_signed(MISS_FRACTION, miss_fraction_context(reference, pixels), fraction, visit);
 }
 
 /// Codes the moves of a shared track, which has no neighbours, at the sizes of a section, each with its number and its scale.
@@ -330,7 +350,7 @@ pub(super) fn code_shared<C: Coder>(
     sizes: impl Iterator<Item = (usize, Scaling)>,
     moves: &mut Vec<i16>,
 ) {
-    let mut track = Track { number: 0, neighbours: Neighbours::default(), scores: Scores::new(0), misses: 0 };
+    let mut track = Track::new(0, Neighbours::default());
     let (mut before, mut ranked) = (None, Ranked::default());
     for (size, scaling) in sizes {
         let plain = [mul_fixed(level.into(), scaling.factor)];
