@@ -202,7 +202,9 @@ fn shared_moves<'s, C: Coder>(
     sources: &'s [Source],
     sizes: Range<usize>,
 ) -> Result<Referred<'s>, Damage> {
-    let mut moves = alloc::vec![0; sources.len() * sizes.len()];
+    // Tracks along x that stay are many, and refer to none.
+    let refers = sources.iter().any(|source| matches!(source, Source::Same(_) | Source::Near(_)));
+    let mut moves = alloc::vec![0; if refers { sources.len() * sizes.len() } else { 0 }];
     for (moves, source) in moves.chunks_exact_mut(sizes.len().max(1)).zip(sources) {
         if let Source::Same(number) | Source::Near(number) = *source {
             let shared =

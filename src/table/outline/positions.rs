@@ -57,7 +57,9 @@ pub type Choose<'c> = &'c mut dyn FnMut(&Question<'_>) -> i32;
 /// The tracks of an axis while their positions are coded.
 pub(super) struct Axis<'r> {
     axis: usize,
-    /// In the order in which they are coded.
+    /// All tracks with their neighbours, in the order in which their positions become known.
+    order: Vec<(u8, Neighbours)>,
+    /// In the same order, those whose moves are coded. Most of the tracks of many glyphs stay, or are shared.
     tracks: Vec<Track>,
     /// Plain positions of all tracks, then the hinted ones at even sizes of the section, and those at odd ones.
     positions: Vec<i32>,
@@ -71,8 +73,6 @@ pub(super) struct Axis<'r> {
 
 /// A track, and what is known of it from smaller sizes.
 struct Track {
-    number: u8,
-    neighbours: Neighbours,
     scores: Scores,
     shifts: Shifts,
     /// Whether the first candidate was wrong at each of the last sizes, the last one lowest.
@@ -84,13 +84,22 @@ impl<'r> Axis<'r> {
     pub(super) fn new(axis: usize, referred: &'r Referred<'r>) -> Self {
         // There are MAX_TRACKS at most.
         let count = referred.sources.len() as u8;
+        let coded = referred.sources.iter().filter(|source| source.is_coded()).count();
+        // Where nothing is coded, nothing is predicted.
+        let count = if coded > 0 { count } else { 0 };
+        let order = coding_order(count);
+        let mut tracks = Vec::with_capacity(coded);
+        tracks.extend(
+            order
+                .iter()
+                .filter(|(number, _)| referred.sources[usize::from(*number)].is_coded())
+                .map(|(_, neighbours)| Track::new(*neighbours)),
+        );
         Self {
             axis,
             referred,
-            tracks: coding_order(count)
-                .into_iter()
-                .map(|(number, neighbours)| Track::new(number, neighbours))
-                .collect(),
+            order,
+            tracks,
             positions: vec![0; 3 * usize::from(count)],
             coded: 0,
             ranked: Ranked::default(),
@@ -107,6 +116,12 @@ impl<'r> Axis<'r> {
         moves: &mut [i16],
         choose: Choose<'_>,
     ) {
+        if self.tracks.is_empty() {
+            for (number, moved) in moves.iter_mut().enumerate() {
+                *moved = self.referred.moved(number, size).unwrap_or(0);
+            }
+            return;
+        }
         let count = self.positions.len() / 3;
         let (plain, rest) = self.positions.split_at_mut(count);
         let (even, odd) = rest.split_at_mut(count);
@@ -117,17 +132,19 @@ impl<'r> Axis<'r> {
         let plain = &*plain;
         let before = (self.coded > 0).then_some(&*before);
         let mut missed = 0;
-        for track in &mut self.tracks {
-            let number = usize::from(track.number);
+        let mut tracks = self.tracks.iter_mut();
+        for (number, neighbours) in &self.order {
+            let number = usize::from(*number);
             let shared = self.referred.moved(number, size);
-            if let Source::Same(_) | Source::Still = self.referred.sources[number] {
-                moves[number] = shared.unwrap_or(0);
-            } else {
+            let coded = if self.referred.sources[number].is_coded() { tracks.next() } else { None };
+            if let Some(track) = coded {
                 let view = View { levels, plain, hinted, before, scaling };
-                let at = At { axis: self.axis, size, missed, shared };
+                let at = At { axis: self.axis, number, neighbours: *neighbours, size, missed, shared };
                 let (moved, is_first) = track.code(model, &view, at, &mut self.ranked, moves[number], choose);
                 moves[number] = moved;
                 missed += usize::from(!is_first);
+            } else {
+                moves[number] = shared.unwrap_or(0);
             }
             hinted[number] = plain[number].wrapping_add(moves[number].into());
         }
@@ -135,10 +152,12 @@ impl<'r> Axis<'r> {
     }
 }
 
-/// The size at which a track's position is coded.
+/// Which track's position is coded, and at which size.
 #[derive(Clone, Copy)]
 struct At {
     axis: usize,
+    number: usize,
+    neighbours: Neighbours,
     /// The index of the size.
     size: usize,
     /// How many tracks were missed at this size.
@@ -148,9 +167,8 @@ struct At {
 }
 
 impl Track {
-    fn new(number: u8, neighbours: Neighbours) -> Self {
-        let scores = Scores::new(neighbours.kind());
-        Self { number, neighbours, scores, shifts: Shifts::new(), misses: 0 }
+    fn new(neighbours: Neighbours) -> Self {
+        Self { scores: Scores::new(neighbours.kind()), shifts: Shifts::new(), misses: 0 }
     }
 
     /// Codes the move at a size; also says whether the position is the first candidate's.
@@ -164,7 +182,7 @@ impl Track {
         choose: Choose<'_>,
     ) -> (i16, bool) {
         // The lowest and the highest track have few rules.
-        match self.neighbours.kind() {
+        match at.neighbours.kind() {
             _ if cfg!(feature = "small") => self.code_by::<C, 3>(model, view, at, ranked, moved, choose),
             0 => self.code_by::<C, 1>(model, view, at, ranked, moved, choose),
             1 => self.code_by::<C, 2>(model, view, at, ranked, moved, choose),
@@ -182,9 +200,9 @@ impl Track {
         moved: i16,
         choose: Choose<'_>,
     ) -> (i16, bool) {
-        let number = usize::from(self.number);
+        let number = at.number;
         let plain = view.plain[number];
-        let rules = view.rules::<N>(number, self.neighbours, at.shared);
+        let rules = view.rules::<N>(number, at.neighbours, at.shared);
         self.scores.rank(&rules, ranked);
         let mut candidates = Candidates {
             ranked,
@@ -350,7 +368,7 @@ pub(super) fn code_shared<C: Coder>(
     sizes: impl Iterator<Item = (usize, Scaling)>,
     moves: &mut Vec<i16>,
 ) {
-    let mut track = Track::new(0, Neighbours::default());
+    let mut track = Track::new(Neighbours::default());
     let (mut before, mut ranked) = (None, Ranked::default());
     for (size, scaling) in sizes {
         let plain = [mul_fixed(level.into(), scaling.factor)];
@@ -361,7 +379,7 @@ pub(super) fn code_shared<C: Coder>(
             before: before.as_ref().map(<[i32; 1]>::as_slice),
             scaling,
         };
-        let at = At { axis: 0, size, missed: 0, shared: None };
+        let at = At { axis: 0, number: 0, neighbours: Neighbours::default(), size, missed: 0, shared: None };
         let wanted = moves.get(size).copied().unwrap_or(0);
         let (moved, _) =
             track.code(model, &view, at, &mut ranked, wanted, &mut |question| question.wanted.into());

@@ -21,6 +21,13 @@ pub enum Source {
     Still,
 }
 
+impl Source {
+    /// Whether there are moves that are coded with the glyph.
+    pub(super) fn is_coded(self) -> bool {
+        matches!(self, Self::Own | Self::Near(_))
+    }
+}
+
 /// Gives the moves of a shared track, by its axis and its number, at some sizes. It is lent working memory.
 pub type SharedMoves<'a> = dyn Fn(usize, usize, Range<usize>, &mut Vec<u16>) -> Result<Vec<i16>, Damage> + 'a;
 
