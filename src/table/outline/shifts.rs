@@ -1,7 +1,7 @@
 //! How far each rule was off where the first candidate was wrong. A position that no candidate gives is coded as its distance from the
 //! rule that was off least, moved on by as much as it was off.
 
-use super::rules::{LANES, ROOM, Rules, VALID};
+use super::rules::{ROOM, RULES, Rules, VALID};
 use crate::table::context_model::class;
 
 /// The mean distance at the start, and the most that counts, in 1/64 pixel.
@@ -16,9 +16,9 @@ const RATE: i32 = 2;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shifts {
     /// How far the position lay above the rule's, in 1/64 pixel, smoothed.
-    by: [i16; LANES],
-    /// How far it lay from there on average, in 1/16 of 1/64 pixel.
-    mean: [u16; LANES],
+    by: [i8; RULES],
+    /// How far it lay from there on average, in 1/4 of 1/64 pixel.
+    mean: [u8; RULES],
 }
 
 /// What a distance counts from.
@@ -31,14 +31,14 @@ pub(super) struct Reference {
 
 impl Shifts {
     pub(super) fn new() -> Self {
-        Self { by: [0; LANES], mean: [(16 * UNKNOWN) as u16; LANES] }
+        Self { by: [0; RULES], mean: [(4 * UNKNOWN) as u8; RULES] }
     }
 
     /// The position of the rule that was off least; of several the first.
     #[inline]
     pub(super) fn reference(&self, positions: &[i32; ROOM], valid: usize) -> Reference {
         let valid = &VALID[valid % VALID.len()].lanes;
-        // There are always rules that need nothing. A mean has 10 bits.
+        // There are always rules that need nothing. A mean has 8 bits.
         let mut best = i32::MAX;
         for (rule, (mean, valid)) in self.mean.iter().zip(valid).enumerate() {
             let key = i32::from(*mean) << 4 | rule as i32 | !i32::from(*valid) & 1 << 16;
@@ -48,7 +48,7 @@ impl Shifts {
         let by = self.by.get(rule).copied().unwrap_or(0);
         Reference {
             position: positions[rule].wrapping_add(by.into()),
-            context: class(best >> 4, [16, 32, 64, 128, 224, 352]),
+            context: class(best >> 4, [4, 8, 16, 32, 56, 88]),
         }
     }
 
@@ -60,9 +60,9 @@ impl Shifts {
         for ((by, mean), (from, valid)) in numbers.take(4 * N) {
             let off = position.wrapping_sub(*from).wrapping_sub((*by).into()).clamp(-MOST, MOST);
             let (valid, far) = (i32::from(*valid), off.abs());
-            *mean = (i32::from(*mean) + (valid & (16 * far - i32::from(*mean)) >> RATE)) as u16;
+            *mean = (i32::from(*mean) + (valid & (4 * far - i32::from(*mean)) >> RATE)) as u8;
             let followed = if far <= FOLLOWED { off >> 1 } else { 0 };
-            *by += (valid & followed) as i16;
+            *by = by.saturating_add((valid & followed) as i8);
         }
     }
 }

@@ -16,9 +16,9 @@ fn the_first_rule_is_the_reference_until_one_is_nearer() {
     // The second rule is off by 1, the others by 7 and by 21.
     shifts.update(&rules, 71);
     let reference = shifts.reference(&rules.positions, rules.valid);
-    // (1 − 20) · 16 / 4 = −76; half of 1, rounded down, is 0.
+    // (1 − 20) · 4 / 4 = −19; half of 1, rounded down, is 0.
     assert_eq!((reference.position, reference.context), (70, 5));
-    assert_eq!(shifts.mean[1], 320 - 76);
+    assert_eq!(shifts.mean[1], 80 - 19);
 }
 
 #[test]
@@ -38,7 +38,7 @@ fn a_jump_by_a_pixel_is_not_followed() {
     shifts.update(&rules(&[0, 64], 0), 0);
     assert_eq!([shifts.by[1], shifts.by[0]], [0, 0]);
     // It counts as 48 of 1/64 pixel.
-    assert_eq!(shifts.mean[1], 320 + (16 * 48 - 320) / 4);
+    assert_eq!(shifts.mean[1], 80 + (4 * 48 - 80) / 4);
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn rules_that_lack_something_learn_nothing_and_are_no_reference() {
     let mut shifts = Shifts::new();
     let rules = rules(&[500, 500, 7, 500, 10], LOWER);
     shifts.update(&rules, 7);
-    assert_eq!((shifts.by[2], shifts.mean[2]), (0, 320));
+    assert_eq!((shifts.by[2], shifts.mean[2]), (0, 80));
     assert_eq!(shifts.reference(&rules.positions, rules.valid).position, 10 + (-3 >> 1));
 }
 
@@ -57,4 +57,13 @@ fn positions_of_damaged_bytes_are_taken() {
         shifts.update(&rules(&[i32::MAX, i32::MIN, 0], BEFORE), position);
     }
     assert!(shifts.by.iter().all(|by| i32::from(*by).abs() <= 3 * FOLLOWED));
+}
+
+#[test]
+fn a_shift_stays_in_8_bits() {
+    let mut shifts = Shifts::new();
+    for size in 0..40 {
+        shifts.update(&rules(&[0], 0), 12 * size);
+    }
+    assert_eq!(shifts.by[0], i8::MAX);
 }
