@@ -73,8 +73,8 @@ const OUTLINE_BINARISATIONS: [([usize; 3], usize); 19] = [
     ([6, 0, 0], 4),
     ([4, 0, 0], 12),
     ([16, 44, 24], 1),
-    ([9, 0, 0], 6),
-    ([12, 0, 0], 8),
+    ([21, 0, 0], 6),
+    ([28, 0, 0], 8),
     ([27, 0, 0], 5),
     ([4, 0, 0], 1),
     ([8, 0, 0], 1),
@@ -102,7 +102,7 @@ pub const SOURCE: Element = OUTLINE_ELEMENTS.0[4];
 pub const SHARED: Element = OUTLINE_ELEMENTS.0[5];
 /// Whether a hinted position is a candidate's.
 pub const HIT: Element = OUTLINE_ELEMENTS.0[6];
-/// How far it is from the first candidate, in whole pixels.
+/// How far it is from a rule's, in whole pixels.
 pub const MISS_PIXELS: Element = OUTLINE_ELEMENTS.0[7];
 /// The rest of that, in 1/64 pixel.
 pub const MISS_FRACTION: Element = OUTLINE_ELEMENTS.0[8];

@@ -4,7 +4,10 @@
 //! `cargo run --release --example priors -- [--outlines] FONT.nfr.ttf ... > priors.txt`. The table is part of the format: fonts that were
 //! written with another one cannot be read, so this is for a new version of it. The present table comes from printable
 //! ASCII (`--unicodes U+21-7E`) of the three fonts of the README's figures, half of it for the target `mono`, too, and
-//! letters and digits of Roboto Medium with `--quality 15` and `85`.
+//! letters and digits of Roboto Medium with `--quality 15` and `85`. That of outlines comes from these, from printable ASCII of Cantarell
+//! and TeX Gyre Heros, and from letters and digits of five fonts that an autohinter hinted, or IPA: Hack, Noto Sans, Noto Sans Devanagari, Noto
+//! Naskh Arabic and IPAex Gothic (`--unicodes U+30-39,U+61-7A`, for the last three `U+915-925`, `U+628-63A` and
+//! `U+3042-3060,U+4EBA,U+9593,U+7406`).
 
 #![allow(clippy::print_stdout)]
 

@@ -278,20 +278,21 @@ impl Corrections {
             return Ok(());
         }
         model.check()?;
-        let mut last = false;
+        // Those of the point before at this size, and at the size before.
+        let (mut last, mut last_before) = (0, 0);
         for point in 0..self.points {
             let by = wanted.iter().find(|c| usize::from(c.point) == point).map_or(0, |c| i32::from(c.by));
             let is_touched = hints.track_of.get(point).is_some_and(|track| *track != UNTOUCHED);
             let before = self.before[point];
-            let context = usize::from(before != 0) * 4 + usize::from(is_touched) * 2 + usize::from(last);
-            last = model.flag(CORRECTED, [context, 0, 0], by != 0);
-            let by = if last {
-                model
-                    .signed(CORRECTION, [class(before.into(), [0, 1]), 0, 0], by)
-                    .clamp(i16::MIN.into(), i16::MAX.into())
+            let context = usize::from(before != 0) * 4 + usize::from(is_touched) * 2 + usize::from(last != 0);
+            let by = if model.flag(CORRECTED, [context, 0, 0], by != 0) {
+                let (predicted, context) = predicted(before.into(), last, last_before);
+                let by = model.signed(CORRECTION, [context, 0, 0], by - predicted);
+                predicted.wrapping_add(by).clamp(i16::MIN.into(), i16::MAX.into())
             } else {
                 0
             };
+            (last, last_before) = (by, before.into());
             self.before[point] = by as i16;
             if by != 0 && !C::WRITES {
                 self.list.push(Correction { size: size as u16, point: point as u16, by: by as i16 });
@@ -299,6 +300,17 @@ impl Corrections {
         }
         Ok(())
     }
+}
+
+/// What a correction is like, and the context of the rest: it changes as that of the point before does, if both points have one at both
+/// sizes, and else it is that of the point before, or that of the size before. Those that are 0 are none.
+fn predicted(before: i32, last: i32, last_before: i32) -> (i32, usize) {
+    let predicted = match (before, last, last_before) {
+        (_, 0, _) => before,
+        (0, ..) | (.., 0) => last,
+        _ => last + before - last_before,
+    };
+    (predicted, 2 * usize::from(last != 0) + usize::from(before != 0))
 }
 
 /// Encodes the moves of a shared track.

@@ -8,6 +8,7 @@ mod rules;
 mod scores;
 mod sections;
 mod shared;
+mod shifts;
 mod structure;
 mod votes;
 

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use super::rules::{Neighbours, Scaling, View, coding_order, to_grid};
 use super::scores::Scores;
 use super::shared::Source;
+use super::shifts::{Reference, Shifts};
 use super::votes::{CANDIDATES, Candidate, Votes};
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
@@ -64,11 +65,13 @@ struct Track {
     /// Whether the first candidate was wrong at each of the last sizes, the last one lowest.
     misses: u8,
     scores: Scores,
+    shifts: Shifts,
 }
 
 impl Track {
     fn new(number: u8, neighbours: Neighbours, is_near: bool) -> Self {
-        Self { number, neighbours, is_near, misses: 0, scores: Scores::new(neighbours.kind()) }
+        let scores = Scores::new(neighbours.kind());
+        Self { number, neighbours, is_near, misses: 0, scores, shifts: Shifts::new() }
     }
 }
 
@@ -178,19 +181,23 @@ impl Track {
         let plain = view.plain[number];
         let rules = view.rules::<N>(number, self.neighbours, at.shared);
         let votes = Votes::new(&rules, &self.scores);
-        let kind = self.neighbours.kind();
-        let state = State { misses: usize::from(self.misses & 3), missed: at.missed, kind };
+        let state = State { misses: usize::from(self.misses & 3), missed: at.missed };
+        let reference = || self.shifts.reference(&rules);
         let moved = if C::WRITES {
-            asked(model, &votes, state, choose, (at.axis, number, at.size), plain, moved)
+            asked(model, (&votes, reference()), state, choose, (at.axis, number, at.size), plain, moved)
         } else {
             moved
         };
         let wanted = plain.wrapping_add(moved.into());
-        let (position, is_first) = code_position(model, votes, state, wanted);
+        let (position, is_first) = code_position(model, votes, reference, state, wanted);
         self.misses = self.misses << 1 | u8::from(!is_first);
         // Damaged bytes may give any position.
         let moved = position.wrapping_sub(plain) as i16;
-        self.scores.update(&rules, plain.wrapping_add(moved.into()));
+        let position = plain.wrapping_add(moved.into());
+        self.scores.update(&rules, position);
+        if !is_first {
+            self.shifts.update(&rules, position);
+        }
         (moved, is_first)
     }
 }
@@ -202,13 +209,11 @@ struct State {
     misses: usize,
     /// How many tracks were missed at this size.
     missed: usize,
-    /// The kind of neighbours.
-    kind: usize,
 }
 
 fn asked<C: Coder, const N: usize>(
     model: &ContextModel<'_, C>,
-    votes: &Votes<N>,
+    (votes, reference): (&Votes<N>, Reference),
     state: State,
     choose: Choose<'_>,
     (axis, track, size): (usize, usize, usize),
@@ -216,9 +221,10 @@ fn asked<C: Coder, const N: usize>(
     wanted: i16,
 ) -> i16 {
     let candidates: Vec<Candidate> = votes.all().collect();
-    let moves: Vec<i32> = candidates.iter().map(|c| c.position.wrapping_sub(plain)).collect();
+    let tried = candidates.iter().map(|c| c.position).chain([reference.position]);
+    let moves: Vec<i32> = tried.map(|position| position.wrapping_sub(plain)).collect();
     let price = |moved: i32, visit: &mut dyn FnMut(u32)| {
-        price(model, &candidates, votes.left, state, plain.wrapping_add(moved), visit);
+        price(model, (&candidates, reference), votes.left, state, plain.wrapping_add(moved), visit);
     };
     let chosen = choose(&Question { axis, track, size, wanted, candidates: &moves, price: &price });
     chosen.clamp(i16::MIN.into(), i16::MAX.into()) as i16
@@ -240,18 +246,20 @@ fn hit_contexts(candidate: &Candidate, rank: usize, left: u32, state: State) -> 
     ]
 }
 
-fn miss_pixels_context(state: State) -> [usize; 3] {
-    [state.kind * 3 + state.missed.min(2), 0, 0]
+fn miss_pixels_context(reference: Reference, state: State) -> [usize; 3] {
+    [reference.context * 3 + state.missed.min(2), 0, 0]
 }
 
-fn miss_fraction_context(first: i32, pixels: i32, state: State) -> [usize; 3] {
-    [state.kind * 4 + usize::from(to_grid(first) == first) * 2 + usize::from(pixels != 0), 0, 0]
+fn miss_fraction_context(reference: Reference, pixels: i32) -> [usize; 3] {
+    let is_whole = to_grid(reference.position) == reference.position;
+    [reference.context * 4 + usize::from(is_whole) * 2 + usize::from(pixels != 0), 0, 0]
 }
 
-/// The distance from the first candidate in whole pixels, and the rest.
-fn split(position: i32, first: i32) -> (i32, i32) {
-    let pixels = to_grid(position.wrapping_sub(first)) >> 6;
-    (pixels, position.wrapping_sub(first).wrapping_sub(pixels << 6))
+/// The distance from the reference in whole pixels, and the rest.
+fn split(position: i32, reference: Reference) -> (i32, i32) {
+    let apart = position.wrapping_sub(reference.position);
+    let pixels = to_grid(apart) >> 6;
+    (pixels, apart.wrapping_sub(pixels << 6))
 }
 
 /// Codes a position; also says whether it is the first candidate's.
@@ -259,31 +267,29 @@ fn split(position: i32, first: i32) -> (i32, i32) {
 fn code_position<C: Coder, const N: usize>(
     model: &mut ContextModel<'_, C>,
     mut votes: Votes<N>,
+    reference: impl Fn() -> Reference,
     state: State,
     position: i32,
 ) -> (i32, bool) {
-    let mut first = 0;
     for rank in 0..CANDIDATES {
         let Some(candidate) = votes.take() else { break };
         let contexts = hit_contexts(&candidate, rank, votes.left, state);
         if model.flag(HIT, contexts, candidate.position == position) {
             return (candidate.position, rank == 0);
         }
-        if rank == 0 {
-            first = candidate.position;
-        }
         votes.left -= candidate.weight;
     }
-    let (pixels, fraction) = split(position, first);
-    let pixels = model.signed(MISS_PIXELS, miss_pixels_context(state), pixels);
-    let fraction = model.signed(MISS_FRACTION, miss_fraction_context(first, pixels, state), fraction);
-    (first.wrapping_add(pixels.wrapping_shl(6)).wrapping_add(fraction), false)
+    let reference = reference();
+    let (pixels, fraction) = split(position, reference);
+    let pixels = model.signed(MISS_PIXELS, miss_pixels_context(reference, state), pixels);
+    let fraction = model.signed(MISS_FRACTION, miss_fraction_context(reference, pixels), fraction);
+    (reference.position.wrapping_add(pixels.wrapping_shl(6)).wrapping_add(fraction), false)
 }
 
 /// Gives the probabilities of the bins of a position.
 fn price<C: Coder>(
     model: &ContextModel<'_, C>,
-    candidates: &[Candidate],
+    (candidates, reference): (&[Candidate], Reference),
     total: u32,
     state: State,
     position: i32,
@@ -299,10 +305,9 @@ fn price<C: Coder>(
         visit((1 << 12) - probability);
         left -= candidate.weight;
     }
-    let first = candidates.first().map_or(0, |candidate| candidate.position);
-    let (pixels, fraction) = split(position, first);
-    model.visit_signed(MISS_PIXELS, miss_pixels_context(state), pixels, visit);
-    model.visit_signed(MISS_FRACTION, miss_fraction_context(first, pixels, state), fraction, visit);
+    let (pixels, fraction) = split(position, reference);
+    model.visit_signed(MISS_PIXELS, miss_pixels_context(reference, state), pixels, visit);
+    model.visit_signed(MISS_FRACTION, miss_fraction_context(reference, pixels), fraction, visit);
 }
 
 /// Codes the moves of a shared track, which has no neighbours, at the sizes of a section, each with its number and its scale.

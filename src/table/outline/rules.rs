@@ -228,7 +228,6 @@ impl<const N: usize> Rules<N> {
     }
 
     /// The rules that have what they need, with their positions.
-    #[cfg(feature = "small")]
     pub(super) fn each(&self) -> impl Iterator<Item = (usize, i32)> {
         let valid = VALID[self.valid % VALID.len()];
         let rules = (0..RULES).filter(move |rule| valid[*rule] != 0);

@@ -27,6 +27,11 @@ impl Fidelity {
         Self { error_per_bit: WORST * (BEST / WORST).powf(share) }
     }
 
+    /// The same with bits that cost so many times as much.
+    pub(crate) fn with_dearer_bits(self, factor: f64) -> Self {
+        Self { error_per_bit: self.error_per_bit * factor }
+    }
+
     /// The quality that stands for this, to a tenth.
     pub fn quality(self) -> f64 {
         if self.is_exact() {
