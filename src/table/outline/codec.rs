@@ -202,7 +202,6 @@ fn shared_moves<'s, C: Coder>(
     sources: &'s [Source],
     sizes: Range<usize>,
 ) -> Result<Referred<'s>, Damage> {
-    // Tracks along x that stay are many, and refer to none.
     let refers = sources.iter().any(|source| matches!(source, Source::Same(_) | Source::Near(_)));
     let mut moves = alloc::vec![0; if refers { sources.len() * sizes.len() } else { 0 }];
     for (moves, source) in moves.chunks_exact_mut(sizes.len().max(1)).zip(sources) {
@@ -297,8 +296,8 @@ impl Corrections {
     }
 }
 
-/// What a correction is like, and the context of the rest: it changes as that of the point before does, if both points have one at both
-/// sizes, and else it is that of the point before, or that of the size before. Those that are 0 are none.
+/// What a correction is like, and the context of the rest: that of the point before, changed as from size to size, or that of the size
+/// before. Those that are 0 are none.
 fn predicted(before: i32, last: i32, last_before: i32) -> (i32, usize) {
     let predicted = match (before, last, last_before) {
         (_, 0, _) => before,

@@ -1,7 +1,7 @@
 //! How far each rule was off where the first candidate was wrong. A position that no candidate gives is coded as its distance from the
 //! rule that was off least, moved on by as much as it was off.
 
-use super::rules::{ROOM, RULES, Rules, VALID};
+use super::rules::{LANES, ROOM, Rules, VALID};
 use crate::table::context_model::class;
 
 /// The mean distance at the start, and the most that counts, in 1/64 pixel.
@@ -16,9 +16,9 @@ const RATE: i32 = 2;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shifts {
     /// How far the position lay above the rule's, in 1/64 pixel, smoothed.
-    by: [i8; RULES],
+    by: [i8; LANES],
     /// How far it lay from there on average, in 1/4 of 1/64 pixel.
-    mean: [u8; RULES],
+    mean: [u8; LANES],
 }
 
 /// What a distance counts from.
@@ -31,7 +31,7 @@ pub(super) struct Reference {
 
 impl Shifts {
     pub(super) fn new() -> Self {
-        Self { by: [0; RULES], mean: [(4 * UNKNOWN) as u8; RULES] }
+        Self { by: [0; LANES], mean: [(4 * UNKNOWN) as u8; LANES] }
     }
 
     /// The position of the rule that was off least; of several the first.
