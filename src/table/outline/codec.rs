@@ -302,8 +302,8 @@ impl Corrections {
     }
 }
 
-/// What a correction is like, and the context of the rest: it changes as that of the point before does, if both points have one at both
-/// sizes, and else it is that of the point before, or that of the size before. Those that are 0 are none.
+/// What a correction is like, and the context of the rest: that of the point before, changed as from size to size, or that of the size
+/// before. Those that are 0 are none.
 fn predicted(before: i32, last: i32, last_before: i32) -> (i32, usize) {
     let predicted = match (before, last, last_before) {
         (_, 0, _) => before,
