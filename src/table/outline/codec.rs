@@ -4,20 +4,19 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use super::corrections::Corrections;
 use super::positions::{self, Axis, Choose, Referred};
 use super::rules::Scaling;
 use super::sections::{self, Owner};
 use super::shared::{Shared, Source};
 use super::structure;
 use crate::error::Damage;
-use crate::model::outline::{AxisHints, Correction, OutlinePoints, OutlineWeights, UNTOUCHED, scale_of};
+use crate::model::outline::{AxisHints, OutlinePoints, OutlineWeights, scale_of};
 use crate::model::sizes::Scale;
 use crate::number::mul_fixed;
 use crate::table::context_model::{ContextModel, class};
 use crate::table::damage::{malformed, malformed_end, too_large};
-use crate::table::elements::{
-    ADVANCE, CORRECTED, CORRECTED_SIZE, CORRECTION, MESSAGE, OUTLINE_GRID_OFFSET, UNUSUAL,
-};
+use crate::table::elements::{ADVANCE, MESSAGE, OUTLINE_GRID_OFFSET, UNUSUAL};
 use crate::table::priors::OUTLINE_PRIOR;
 use crate::table::range::{Coder, Decoder, Encoder};
 
@@ -232,85 +231,6 @@ fn advance_context(advance: u16, scale: i32, x: &AxisHints, size: usize, before:
     let rounded = |position: i32| position.wrapping_add(32) >> 6;
     let edge = rounded(plain.wrapping_add(moved)).wrapping_sub(rounded(plain));
     class(edge, [0, 1]) * 9 + class(before[0], [0, 1]) * 3 + class(before[1], [0, 1])
-}
-
-/// The corrections of an axis while they are coded.
-struct Corrections {
-    axis: usize,
-    is_used: bool,
-    /// How far each point is corrected at the size before.
-    before: Vec<i16>,
-    /// Whether any was.
-    any_before: bool,
-    /// Those that were read.
-    list: Vec<Correction>,
-    points: usize,
-}
-
-impl Corrections {
-    fn new(axis: usize, hints: &AxisHints, points: usize, writes: bool) -> Self {
-        let is_used = writes && !hints.corrections.is_empty();
-        Self { axis, is_used, before: Vec::new(), any_before: false, list: Vec::new(), points }
-    }
-
-    /// Forgets the size before.
-    fn restart(&mut self) {
-        self.any_before = false;
-        self.before.fill(0);
-    }
-
-    fn code<C: Coder>(
-        &mut self,
-        model: &mut ContextModel<'_, C>,
-        size: usize,
-        hints: &mut AxisHints,
-    ) -> Result<(), Damage> {
-        self.before.resize(self.points, 0);
-        let wanted = if C::WRITES { hints.corrections_at(size) } else { &[] };
-        let any = model.flag(
-            CORRECTED_SIZE,
-            [self.axis * 2 + usize::from(self.any_before), 0, 0],
-            !wanted.is_empty(),
-        );
-        self.any_before = any;
-        if !any {
-            self.before.fill(0);
-            return Ok(());
-        }
-        model.check()?;
-        // Those of the point before at this size, and at the size before.
-        let (mut last, mut last_before) = (0, 0);
-        for point in 0..self.points {
-            let by = wanted.iter().find(|c| usize::from(c.point) == point).map_or(0, |c| i32::from(c.by));
-            let is_touched = hints.track_of.get(point).is_some_and(|track| *track != UNTOUCHED);
-            let before = self.before[point];
-            let context = usize::from(before != 0) * 4 + usize::from(is_touched) * 2 + usize::from(last != 0);
-            let by = if model.flag(CORRECTED, [context, 0, 0], by != 0) {
-                let (predicted, context) = predicted(before.into(), last, last_before);
-                let by = model.signed(CORRECTION, [context, 0, 0], by - predicted);
-                predicted.wrapping_add(by).clamp(i16::MIN.into(), i16::MAX.into())
-            } else {
-                0
-            };
-            (last, last_before) = (by, before.into());
-            self.before[point] = by as i16;
-            if by != 0 && !C::WRITES {
-                self.list.push(Correction { size: size as u16, point: point as u16, by: by as i16 });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// What a correction is like, and the context of the rest: that of the point before, changed as from size to size, or that of the size
-/// before. Those that are 0 are none.
-fn predicted(before: i32, last: i32, last_before: i32) -> (i32, usize) {
-    let predicted = match (before, last, last_before) {
-        (_, 0, _) => before,
-        (0, ..) | (.., 0) => last,
-        _ => last + before - last_before,
-    };
-    (predicted, 2 * usize::from(last != 0) + usize::from(before != 0))
 }
 
 /// Encodes the moves of a shared track.

@@ -1,6 +1,7 @@
 //! The coding of outline models.
 
 mod codec;
+mod corrections;
 mod index;
 mod parts;
 mod positions;

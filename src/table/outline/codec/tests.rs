@@ -1,5 +1,5 @@
 use super::*;
-use crate::model::outline::AxisHints;
+use crate::model::outline::{AxisHints, Correction};
 use crate::model::sizes::Origin;
 use crate::table::outline::sizes_for;
 
