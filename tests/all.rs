@@ -1,4 +1,4 @@
-//! The tests of the renderer, but for those that count allocations and those of the fonts, which are not in the package.
+//! The tests of the renderer, but for those that count allocations.
 //! One program, since linking one for each file takes minutes.
 #![allow(clippy::unwrap_used)]
 
@@ -24,7 +24,7 @@ fn every_file_is_declared() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap();
         let file = path.extension().is_some_and(|extension| extension == "rs");
-        let apart = ["all", "fonts", "memory"].contains(&name);
+        let apart = ["all", "memory"].contains(&name);
         assert!(
             !file || apart || declared.contains(&format!("mod {name};")),
             "declare {name} in tests/all.rs"

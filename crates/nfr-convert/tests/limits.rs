@@ -1,4 +1,7 @@
 //! Options and fonts that cannot be converted are refused before any training.
+#![allow(clippy::unwrap_used)]
+
+mod samples;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -11,7 +14,7 @@ use write_fonts::FontBuilder;
 use write_fonts::from_obj::ToOwnedTable;
 use write_fonts::tables::glyf::{GlyfLocaBuilder, Glyph as NewGlyph, SimpleGlyph};
 
-use crate::samples::{font, gids};
+use samples::{font, gids};
 
 // OpenType 1.9, "head".
 const UNITS_PER_EM_AT: usize = 18;

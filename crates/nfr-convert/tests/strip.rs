@@ -1,4 +1,5 @@
 //! Removing programs from `glyf`: byte by byte on small glyphs, and on damaged data.
+#![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeSet;
 

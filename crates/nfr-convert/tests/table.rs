@@ -1,4 +1,5 @@
 //! Models are read as they were written, and what readers refuse is not written.
+#![allow(clippy::unwrap_used)]
 
 use nfr::internals::Damage;
 use nfr::internals::model::compose::{Composed, Part};

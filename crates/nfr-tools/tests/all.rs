@@ -19,6 +19,7 @@ mod cli_variable;
 mod cli_verify;
 mod common;
 mod errors;
+mod fonts;
 #[path = "../../nfr-convert/tests/samples/mod.rs"]
 mod samples;
 mod whole;

@@ -1,5 +1,4 @@
 //! The test fonts are the ones that `fonts/README.md` describes.
-#![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeSet;
 use std::path::Path;
