@@ -92,9 +92,7 @@ fn dejavu_sans_is_much_closer_to_its_hinted_bitmaps_than_its_outlines_are() {
 
 #[test]
 fn roboto_is_much_closer_to_its_hinted_bitmaps_than_its_outlines_are() {
-    for weight in ["500Medium", "600SemiBold", "700Bold"] {
-        hold(&format!("Roboto_{weight}"), Target::Smooth, &SMOOTH);
-    }
+    hold("Roboto_500Medium", Target::Smooth, &SMOOTH);
 }
 
 #[test]
