@@ -326,7 +326,21 @@ fn a_report_of_what_is_finished_says_what_is_not() {
         trainings.lines().count() == 3 && trainings.contains("masked,LiberationSerif-Regular,U+006C,1,"),
         "{trainings}"
     );
-    assert!(read(&directory, "out/report/index.html").contains("trained on CPU"));
+    // Charts of nothing are left out, and the page says of what.
+    let page = read(&directory, "out/report/index.html");
+    assert!(page.contains("trained on CPU") && page.contains("src=\"loss-masked.svg\""), "{page}");
+    for (title, file) in [
+        ("The implicit network without its parts", "ablations.svg"),
+        ("Between two weights", "weights-u006c.png"),
+        ("The network in a font", "histogram-DejaVuSans.svg"),
+    ] {
+        assert!(page.contains(&format!("<h2>{title}</h2><p>Not run.</p>")), "{title}: {page}");
+        assert!(
+            !page.contains(file)
+                && !std::path::Path::new(&directory.name(&format!("out/report/{file}"))).exists(),
+            "{file}"
+        );
+    }
 }
 
 #[test]

@@ -43,25 +43,33 @@ fn errors(rows: &[ErrorRow]) -> Vec<f64> {
 
 fn histograms(context: &ReportContext<'_>) -> Result<ReportSection, Error> {
     let label = context.label();
-    let figure = |dataset: &Dataset| {
+    let figure = |dataset: &Dataset| -> Result<Option<ReportFigure>, Error> {
         let series = compared_models().map(|model| {
             let rows = rows_of_model(&context.results.evaluations, &model);
             let values = rows.into_iter().filter(|row| row.font == dataset.name).map(|row| row.mse);
             ErrorSeries { name: model, values: values.collect() }
         });
+        if series.iter().all(|model| model.values.is_empty()) {
+            return Ok(None);
+        }
         let title = format!("Errors on {}", dataset.name);
         let chart = error_histogram(&Headings { title: &title, subtitle: &label }, &series)?;
         let caption =
             format!("{}: how many bitmaps, of all characters and sizes, have which error.", dataset.name);
-        Ok(svg(&format!("histogram-{}.svg", dataset.name), chart, caption))
+        Ok(Some(svg(&format!("histogram-{}.svg", dataset.name), chart, caption)))
     };
     Ok(ReportSection {
         title: "Masked network, implicit network and grid-fit field",
         text: html! {
-            "The mean squared error of every bitmap of the characters " (context.plan.glyphs) ", on three fonts. The \
+            "The mean squared error of every bitmap of the characters " (context.plan.glyphs) ", font by font. The \
              grid-fit field is this project's own model with its default options."
         },
-        figures: context.plan.fonts.iter().map(figure).collect::<Result<_, Error>>()?,
+        figures: context
+            .plan
+            .fonts
+            .iter()
+            .filter_map(|font| figure(font).transpose())
+            .collect::<Result<_, _>>()?,
     })
 }
 
@@ -107,6 +115,10 @@ fn ablations(context: &ReportContext<'_>) -> Result<ReportSection, Error> {
         variants
             .push(ErrorSeries { values: errors(&rows_of_model(&context.results.ablations, &name)), name });
     }
+    let title = "The implicit network without its parts";
+    if variants[1..].iter().all(|variant| variant.values.is_empty()) {
+        return Ok(ReportSection::not_run(title));
+    }
     let label = context.label();
     let chart = box_plot(&Headings { title: "Ablations", subtitle: &label }, &variants)?;
     let caption = format!(
@@ -116,7 +128,7 @@ fn ablations(context: &ReportContext<'_>) -> Result<ReportSection, Error> {
         context.plan.ablated
     );
     Ok(ReportSection {
-        title: "The implicit network without its parts",
+        title,
         text: html! {
             "Without the size as an input the network is that of the published code for one weight: it tells sizes \
              apart by where their pixels lie and by the statistics of the batch."
@@ -136,15 +148,16 @@ fn losses(context: &ReportContext<'_>) -> Result<ReportSection, Error> {
             .iter()
             .map(|evaluation| loss_line(&evaluation.glyph.to_string(), &evaluation.history))
             .collect();
-        let rates: Vec<f64> =
-            evaluations.first().map_or(Vec::new(), |one| one.history.iter().map(|e| e.rate).collect());
+        let Some(first) = evaluations.first() else { continue };
+        let rates: Vec<f64> = first.history.iter().map(|epoch| epoch.rate).collect();
         let starts: Vec<f64> = resets(&rates).into_iter().map(|epoch| epoch as f64).collect();
         let title = format!("Loss of the {model} network on {}", context.font());
         let chart = loss_history(&Headings { title: &title, subtitle: &label }, &curves, &starts)?;
         let caption = "A curve for each character; dashed where the learning rate starts anew.";
         figures.push(svg(file, chart, caption));
     }
-    Ok(ReportSection { title: "Training", text: trainings(context), figures })
+    let text = if figures.is_empty() { Markup::default() } else { trainings(context) };
+    Ok(ReportSection { title: "Training", text, figures })
 }
 
 /// The trainings by network and device: how many there are, what they took, and how fast they went.

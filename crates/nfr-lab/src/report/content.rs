@@ -76,11 +76,22 @@ pub(super) struct ReportFigure {
     pub(super) caption: String,
 }
 
-/// A heading of the report with its text and figures.
+/// A heading of the report with its text and figures. Without either, its experiment was not run.
 pub(super) struct ReportSection {
     pub(super) title: &'static str,
     pub(super) text: Markup,
     pub(super) figures: Vec<ReportFigure>,
+}
+
+impl ReportSection {
+    /// The section of an experiment that was not run.
+    pub(super) fn not_run(title: &'static str) -> Self {
+        Self { title, text: Markup::default(), figures: Vec::new() }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.text.0.is_empty() && self.figures.is_empty()
+    }
 }
 
 /// The models in the order in which charts and pictures have them.

@@ -60,6 +60,7 @@ pub(super) fn page(context: &ReportContext<'_>, claims: &[Claim], sections: &[Re
                 }
                 @for section in sections {
                     h2 { (section.title) }
+                    @if section.is_empty() { p { "Not run." } }
                     (section.text)
                     @for figure in &section.figures {
                         figure {

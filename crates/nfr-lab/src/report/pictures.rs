@@ -167,6 +167,9 @@ impl Pictures<'_> {
         experiment: &str,
         all: &[Interpolation],
     ) -> Result<ReportSection, Error> {
+        if all.is_empty() {
+            return Ok(ReportSection::not_run(title));
+        }
         let mut figures = Vec::new();
         for one in all {
             let picture = between(&self.font, one)?;
@@ -200,6 +203,10 @@ impl Pictures<'_> {
 }
 
 fn stored(context: &ReportContext<'_>) -> ReportSection {
+    let title = "The network in a font";
+    if context.results.stored.is_empty() {
+        return ReportSection::not_run(title);
+    }
     let bytes = &context.results.grid_fit_bytes;
     let mean_bytes = bytes.iter().sum::<usize>() as f64 / bytes.len().max(1) as f64;
     let text = html! {
@@ -222,5 +229,5 @@ fn stored(context: &ReportContext<'_>) -> ReportSection {
             }
         }
     };
-    ReportSection { title: "The network in a font", text, figures: Vec::new() }
+    ReportSection { title, text, figures: Vec::new() }
 }
